@@ -1,0 +1,299 @@
+"""From text to a program: read, resolved, checked against TABLE and the model, all problems reported together."""
+
+from ..devices import Constant, Device, Name
+from ..errors import Problem, ProgramError
+from ..instructions import TABLE, Definition
+from ..models import Model, get_model
+from ..values import BOOL, TYPES
+from .operands import Refused, Resolver
+from .program import Instruction, Network, Program, Region, Unit, Variable
+from .reader import RawUnit, RawVariable, Source, Statement, read, shown
+from .structure import find_structure
+
+__all__ = ["Instruction", "Network", "Program", "Region", "Unit", "Variable", "assemble"]
+
+
+def assemble(text: str, model: str | Model, name: str = "") -> Program:
+    """The program that `text` spells for a model; raises ProgramError with every problem found. `name` is shown in messages."""
+    return _Assembler(read(text, name), get_model(model)).program()
+
+
+class _Assembler:
+    def __init__(self, source: Source, model: Model):
+        self.source, self.model = source, model
+        self.definitions = {
+            **{mnemonic: row for mnemonic, row in TABLE.items() if model.family not in ("EC",) or model.name in row.models},
+            **{spelled: TABLE[mnemonic] for spelled, mnemonic in model.spelling.items()},
+        }
+
+    def program(self) -> Program:
+        variables = self._globals()
+        self.resolver = Resolver(self.model, variables)
+        if not self.source.units:
+            self.source.units.append(RawUnit("MAIN", "MAIN", 1))
+        if self.source.units[0].kind != "MAIN":
+            self.source.report(self.source.units[0].line, "there is no main program", "put it between PROGRAM MAIN and END_PROGRAM", "4.2.1")
+        self.units = [self._unit(raw) for raw in self.source.units]
+        self._unit_names()
+        slots = 0
+        for unit, raw in zip(self.units, self.source.units, strict=True):
+            for statement in raw.statements:
+                instruction = self._instruction(statement, unit)
+                if instruction is not None:
+                    if statement.title:
+                        unit.titles[len(unit.instructions)] = statement.title
+                    unit.instructions.append(instruction)
+        self._raise()  # structure is looked at only where every word was understood
+        for unit in self.units:
+            find_structure(unit, self.model.limits, self.model.initial_steps, self._report_instruction)
+        self._calls()
+        position, step = 0, 0
+        for unit in self.units:
+            stepping = {i for region in _regions(unit.nodes) if region.kind == "STL" for i in range(region.opening, region.closing)}
+            for index, instruction in enumerate(unit.instructions):
+                instruction.position, instruction.step = position, step
+                instruction.steps = self._steps(instruction, index in stepping)
+                if "state" in instruction.definition.function.__code__.co_varnames:
+                    instruction.slot, slots = slots, slots + 1
+                position, step = position + 1, step + instruction.steps
+            for region in _regions(unit.nodes):
+                if region.kind == "STL":
+                    region.slot, slots = slots, slots + 1
+        if step > self.model.limits["steps"]:
+            self.source.report(0, f"the program has {step} steps", f"{self.model.name} holds {self.model.limits['steps']}", "1.1")
+        self._raise()
+        return Program(self.model, self.source.text, self.units, variables, step, slots)
+
+    def _raise(self) -> None:
+        if self.source.problems:
+            raise ProgramError(self.source.problems)
+
+    # -- variables and units ------------------------------------------------------------------------------------
+
+    def _globals(self) -> dict[str, Variable]:
+        variables: dict[str, Variable] = {}
+        folded: dict[str, str] = {}
+        resolver = Resolver(self.model, {})
+        for raw in self.source.globals:
+            if not self._good_name(raw, resolver):
+                continue
+            if raw.name.casefold() in folded:
+                self.source.report(raw.line, f"the name {raw.name} is declared twice", "names differ by more than case")
+                continue
+            try:
+                device = resolver.resolve(raw.what, {})
+                if isinstance(device, Device):
+                    resolver._number(device.area, device.number, 1, raw.what)
+            except Refused as refused:
+                self.source.report(raw.line, refused.message, refused.hint, refused.section, word=2)
+                continue
+            if not isinstance(device, Device) or device.index is not None:
+                self.source.report(raw.line, f"{raw.name} names {shown(raw.what)}, which is no single device", "name a device, for example X0 or D100", word=2)
+                continue
+            folded[raw.name.casefold()] = raw.name
+            variables[raw.name] = Variable(raw.name, device, raw.comment, role="GLOBAL", line=raw.line)
+        if len(variables) > self.model.limits["global variables"]:
+            self.source.report(self.source.globals[0].line, f"{len(variables)} global variables", f"{self.model.name} has room for {self.model.limits['global variables']}", "2.2.3")
+        return variables
+
+    def _good_name(self, raw: RawVariable, resolver: Resolver) -> bool:
+        name = raw.name
+        taken = ""
+        if not name.isidentifier():
+            taken = "a name is made of letters, digits and _ and does not begin with a digit"
+        elif self._is_operand(name, resolver):
+            taken = "it reads like a device or a number"
+        elif name.upper() in self.definitions:
+            taken = "it is the name of an instruction"
+        if taken:
+            self.source.report(raw.line, f"{shown(name)} cannot be a variable's name", taken)
+        return not taken
+
+    @staticmethod
+    def _is_operand(name: str, resolver: Resolver) -> bool:
+        try:
+            return resolver.model.syntax.parse(name) is not None
+        except ValueError:
+            return True
+
+    def _unit(self, raw: RawUnit) -> Unit:
+        event = None
+        if raw.event is not None:
+            if raw.event.isdigit() and raw.event.isascii() and len(raw.event) < 4:
+                event = int(raw.event)
+            else:
+                self.source.report(raw.line, f"EVENT {shown(raw.event)} is no event number", "chapter 9 numbers them from 0 to 37", "9.1", word=3)
+        unit = Unit(raw.kind, raw.name, event, line=raw.line)
+        room = {"LM": 0, "V": 0}
+        count = {"bit": 0, "word": 0}
+        for declared in raw.variables:
+            kind = TYPES.get(declared.what)
+            if kind is None:
+                self.source.report(declared.line, f"{shown(declared.what)} is no data type", f"use {', '.join(TYPES)}", "4.4.3", word=3)
+                continue
+            if declared.name.casefold() in unit.variables:
+                self.source.report(declared.line, f"the variable {shown(declared.name)} is declared twice", "", "4.4.3", word=1)
+                continue
+            if raw.kind != "SUBROUTINE" and declared.role != "TEMP":
+                self.source.report(declared.line, f"only a subroutine has {declared.role} variables", "", "4.4.3")
+            area = "LM" if kind is BOOL else "V"
+            count["bit" if kind is BOOL else "word"] += 1
+            unit.variables[declared.name.casefold()] = Variable(declared.name, Device(area, room[area]), declared.comment, kind, declared.role, declared.line)
+            room[area] += max(1, kind.words)
+        for what, number in count.items():
+            if number > self.model.limits[f"{what} variables"]:
+                self.source.report(raw.line, f"{raw.name} has {number} {what} variables", f"at most {self.model.limits[f'{what} variables']}", "4.4.2")
+        return unit
+
+    def _unit_names(self) -> None:
+        seen: dict[str, Unit] = {}
+        events: dict[int, Unit] = {}
+        for unit in self.units:
+            first = seen.setdefault(unit.name.upper(), unit)
+            if first is not unit:
+                self.source.report(unit.line, f"the name {shown(unit.name)} stands twice", f"it stands in line {first.line} already", word=1)
+            if unit.event is not None:
+                other = events.setdefault(unit.event, unit)
+                if other is not unit:
+                    self.source.report(unit.line, f"the event {unit.event} has two interrupt programs", f"{other.name} in line {other.line} serves it already", "9.2", word=3)
+        count = sum(unit.kind == "SUBROUTINE" for unit in self.units)
+        if count > self.model.limits["subroutines"]:
+            self.source.report(self.units[-1].line, f"{count} subroutines", f"at most {self.model.limits['subroutines']}", "4.4.2")
+
+    # -- instructions -------------------------------------------------------------------------------------------
+
+    def _instruction(self, statement: Statement, unit: Unit) -> Instruction | None:
+        definition = self.definitions.get(statement.mnemonic)
+        if definition is None:
+            self._unknown(statement)
+            return None
+        if definition.mnemonic == "CALL":
+            operands = self._call_operands(definition, statement, unit)
+        else:
+            operands = self._operands(definition, statement, unit)
+        if operands is None:
+            return None
+        return Instruction(definition.mnemonic, definition, operands, statement.operands, statement.line, statement.comment)
+
+    def _unknown(self, statement: Statement) -> None:
+        written = statement.mnemonic
+        row = TABLE.get(written)
+        if row is not None:
+            self.source.report(statement.line, f"{self.model.name} has no {written}", f"{written} exists on {' and '.join(row.models)}", row.section)
+            return
+        from difflib import get_close_matches
+
+        close = get_close_matches(written[:12], self.definitions, 3, 0.6)
+        self.source.report(statement.line, f"{shown(written)} is no instruction", f"did you mean {' or '.join(close)}?" if close else "one instruction a line, for example LD X0")
+
+    def _operands(self, definition: Definition, statement: Statement, unit: Unit):
+        specs, words = definition.operands, statement.operands
+        if len(specs) != len(words):
+            names = " ".join(spec.name for spec in specs)
+            wanted = f"{definition.mnemonic} takes {len(specs)} operand{'s' if len(specs) != 1 else ''}" + (f" ({names})" if specs else "")
+            self.source.report(statement.line, f"{wanted}, found {len(words)}", "", definition.section, word=min(len(words), len(specs) + 1))
+            return None
+        operands = []
+        for place, (spec, word) in enumerate(zip(specs, words, strict=True), 1):
+            try:
+                operands.append(self.resolver.operand(spec, word, unit.variables))
+            except Refused as refused:
+                self.source.report(statement.line, refused.message, refused.hint, refused.section or definition.section, word=place)
+        if len(operands) < len(specs):
+            return None
+        if definition.check:
+            wrong = definition.check(*(operand.value if isinstance(operand, Constant) else operand for operand in operands))
+            if wrong:
+                self.source.report(statement.line, wrong, "", definition.section)
+                return None
+        return tuple(operands)
+
+    def _call_operands(self, definition: Definition, statement: Statement, unit: Unit):
+        words = statement.operands
+        name = words[0] if words else ""
+        callee = next((u for u in self.units if u.kind == "SUBROUTINE" and u.name.upper() == name.upper()), None)
+        if callee is None:
+            known = ", ".join(u.name for u in self.units if u.kind == "SUBROUTINE")
+            hint = f"there is {known}" if known else "define it between SUBROUTINE NAME and END_SUBROUTINE"
+            self.source.report(statement.line, f"there is no subroutine {shown(name)}", hint, definition.section, word=1)
+            return None
+        parameters = callee.parameters
+        if len(parameters) != len(words) - 1:
+            names = " ".join(variable.name for variable in parameters) or "none"
+            self.source.report(statement.line, f"{callee.name} takes {len(parameters)} operands ({names}), found {len(words) - 1}", "", definition.section)
+            return None
+        operands: list = [Name(callee.name)]
+        for place, (variable, word) in enumerate(zip(parameters, words[1:], strict=True), 2):
+            try:
+                operands.append(self.resolver.operand(_parameter_spec(variable), word, unit.variables))
+            except Refused as refused:
+                self.source.report(statement.line, refused.message, refused.hint, refused.section or definition.section, word=place)
+        return tuple(operands) if len(operands) == len(words) else None
+
+    def _steps(self, instruction: Instruction, in_step: bool) -> int:
+        definition, operands = instruction.definition, instruction.operands
+        if definition.steps is None:
+            return 3 + len(operands)
+        steps = definition.steps
+        if in_step and definition.transition_steps and operands[0].area == "S":
+            steps = definition.transition_steps
+        surcharge = self.model.step_surcharge
+        if surcharge and definition.form == "contact" and definition.section.startswith("5.1"):
+            device = operands[0]
+            if device.area == surcharge[0] and device.number >= surcharge[1]:
+                steps += 1
+        return steps
+
+    def _report_instruction(self, instruction: Instruction, message: str, hint: str = "", section: str = "") -> None:
+        self.source.problems.append(Problem(instruction.line, self.source.column(instruction.line, 0), message, hint, section, self.source.name))
+
+    # -- calls --------------------------------------------------------------------------------------------------
+
+    def _calls(self) -> None:
+        calls = {unit.name.upper(): [i for i in unit.instructions if i.mnemonic == "CALL"] for unit in self.units}
+        limit = self.model.limits["CALL nesting"]
+        depth: dict[str, int] = {}
+
+        def deepest(name: str, path: tuple[str, ...]) -> int:
+            if name in depth:
+                return depth[name]
+            best = 0
+            for instruction in calls[name]:
+                callee = instruction.operands[0].text.upper()
+                if callee in path:
+                    self._report_instruction(instruction, f"{instruction.operands[0]} calls itself, directly or through others", "subroutines cannot recur", "4.4.2")
+                    continue
+                best = max(best, 1 + deepest(callee, (*path, callee)))
+            depth[name] = best
+            return best
+
+        for unit in self.units:
+            if unit.kind == "MAIN" and deepest(unit.name.upper(), (unit.name.upper(),)) > limit:
+                self._report_instruction(calls[unit.name.upper()][0], f"calls are nested {depth[unit.name.upper()]} deep", f"at most {limit}", "4.4.2")
+            deepest(unit.name.upper(), (unit.name.upper(),))
+
+
+_PARAMETERS: dict[tuple[str, str], object] = {}
+
+
+def _parameter_spec(variable: Variable):
+    """The operand table row that a subroutine's variable stands for at the call (table 3-3)."""
+    from ..instructions.signature import parse_signature
+
+    key = (variable.role, variable.type.name)
+    if key not in _PARAMETERS:
+        kind = variable.type.name
+        text = {
+            "INPUT": f"P:{kind}+const" if kind == "BOOL" else f"P:{kind}",
+            "OUTPUT": f"-> P:{kind}{'+SM' if kind == 'BOOL' else '+SD' if kind != 'REAL' else ''}",
+            "IN_OUT": f"P:{kind}{'+SM' if kind == 'BOOL' else '+SD' if kind != 'REAL' else ''} -> P",
+        }[variable.role]
+        _PARAMETERS[key] = parse_signature(text)[0][0]
+    return _PARAMETERS[key]
+
+
+def _regions(nodes):
+    for node in nodes:
+        if isinstance(node, Region):
+            yield node
+            yield from _regions(node.nodes)

@@ -1,0 +1,154 @@
+"""Operands: each word of a statement resolved and held against its row of the instruction's operand table (3.3.2)."""
+
+from ..devices import Bits, Constant, Device, Name, Operand, OperandError, number_text
+from ..instructions.signature import OperandSpec
+from ..models import Model
+from ..values import REAL, REAL_MAX
+from .program import Variable
+from .reader import shown
+
+
+class Refused(Exception):
+    """An operand does not fit; the message says why, `hint` what would, `section` where the manual says so."""
+
+    def __init__(self, message: str, hint: str = "", section: str = "3.3.2"):
+        super().__init__(message)
+        self.message, self.hint, self.section = message, hint, section
+
+
+class Resolver:
+    """Resolves the words of one program for its model, with its global variables."""
+
+    def __init__(self, model: Model, variables: dict[str, Variable]):
+        self.model = model
+        self.variables = variables
+        self._by_fold = {name.casefold(): variable for name, variable in variables.items()}
+        self._checked: dict[tuple[int, str], Operand] = {}
+
+    def resolve(self, text: str, local: dict[str, Variable]) -> Operand:
+        """The operand that a word stands for: a constant, a device, a global name, or `#NAME` of the unit's own variables."""
+        if text.startswith("#"):
+            variable = local.get(text[1:].casefold())
+            if variable is None:
+                known = ", ".join(f"#{v.name}" for v in local.values())
+                raise Refused(f"{shown(text)} is not declared here", f"this unit has {known}" if known else "only subroutines have variables of their own", "4.4.3")
+            return variable.device
+        try:
+            operand = self.model.syntax.parse(text)
+        except OperandError as error:
+            raise Refused(str(error), error.hint, "3.2") from None
+        if operand is None:
+            variable = self._by_fold.get(text.casefold())
+            if variable is None:
+                raise Refused(f"{shown(text)} is neither a device of {self.model.name} nor a declared name", "declare it: VAR_GLOBAL NAME AT DEVICE END_VAR", "")
+            return variable.device
+        return operand
+
+    def operand(self, spec: OperandSpec, text: str, local: dict[str, Variable]) -> Operand:
+        """The operand for one place of an instruction; raises Refused when it does not fit there."""
+        key = (id(spec), text)
+        operand = self._checked.get(key)
+        if operand is not None:
+            return operand
+        if spec.kind == "ROUTINE":
+            return Name(text)
+        operand = self.resolve(text, local)
+        if text.startswith("#"):
+            self._local_type(spec, text, local)
+        self.check(spec, operand, text)
+        if not text.startswith("#"):
+            self._checked[key] = operand
+        return operand
+
+    def _local_type(self, spec: OperandSpec, text: str, local: dict[str, Variable]) -> None:
+        kind = local[text[1:].casefold()].type
+        if kind.bits != spec.type.bits or (kind is REAL) != (spec.type is REAL):
+            raise Refused(f"{spec.name} = {text} is {kind.name}", f"{spec.name} needs {spec.type.name}", "4.4.3")
+
+    def check(self, spec: OperandSpec, operand: Operand, text: str) -> None:
+        """Hold an operand against its row: kind of device, type, range, index, whether it may be written."""
+        if isinstance(operand, Constant):
+            self._constant(spec, operand, text)
+        elif isinstance(operand, Bits):
+            self._area(spec, f"Kn{operand.area}", text)
+            self._digits(spec, operand, text)
+            self._number(operand.area, operand.number, 4 * operand.digits, text)
+            self._index(spec, operand, text)
+        else:
+            self._area(spec, operand.area, text)
+            self._number(operand.area, operand.number, 1 if self.model.areas[operand.area].kind in ("bit", "timer", "counter") else max(1, spec.type.words), text)
+            if operand.area == "C" and spec.type.words:
+                self._counter_width(spec, operand, text)
+            if spec.range and spec.kind != "INT":
+                self._device_range(spec, operand, text)
+            self._index(spec, operand, text)
+            if spec.written:
+                self._writable(spec, operand, text)
+
+    def _area(self, spec: OperandSpec, area: str, text: str) -> None:
+        if area not in spec.areas:
+            what = "is read only" if spec.written and area in ("KnX", "X") else f"cannot be {spec.name}"
+            raise Refused(f"{shown(text)} {what}", f"{spec.name} ({spec.type.name}) may be {self._allowed(spec)}")
+
+    @staticmethod
+    def _allowed(spec: OperandSpec) -> str:
+        words = ["a constant" if area == "const" else area for area in spec.order]
+        return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} or {words[-1]}"
+
+    def _constant(self, spec: OperandSpec, constant: Constant, text: str) -> None:
+        if "const" not in spec.areas:
+            raise Refused(f"the constant {shown(text)} cannot be {spec.name}", f"{spec.name} ({spec.type.name}) may be {self._allowed(spec)}")
+        value = constant.value
+        if spec.type is REAL:
+            if abs(value) > REAL_MAX:
+                raise Refused(f"{spec.name} = {shown(text)} is out of range", "REAL goes to 3.402823E+38", "3.3.3")
+            return
+        if not isinstance(value, int):
+            raise Refused(f"{spec.name} = {shown(text)} is no whole number", f"{spec.name} is {spec.type.name}", "3.3.3")
+        if spec.range:
+            low, high = spec.range
+            if not low <= value <= high:
+                raise Refused(f"{spec.name} = {shown(text)} is out of range", f"{spec.name} goes from {low} to {high}", "")
+        elif not -(1 << spec.type.bits - 1) <= value < 1 << spec.type.bits:
+            low, high = -(1 << spec.type.bits - 1), (1 << spec.type.bits) - 1
+            raise Refused(f"{spec.name} = {shown(text)} does not fit into {spec.type.bits} bits", f"constants go from {low} to {high} here", "3.3.3")
+
+    def _digits(self, spec: OperandSpec, bits: Bits, text: str) -> None:
+        if spec.type.words == 1 and bits.digits > 4:
+            raise Refused(f"{shown(text)} is too wide for {spec.name} ({spec.type.name})", "K1 to K4 for 16 bits")
+        if spec.type.words == 2 and bits.digits < 5:
+            raise Refused(f"{shown(text)} is too narrow for {spec.name} ({spec.type.name})", "K5 to K8 for 32 bits")
+
+    def _number(self, area: str, number: int, length: int, text: str) -> None:
+        room = self.model.areas[area]
+        if number >= room.count:
+            raise Refused(f"{self.model.name} has no {area}{number_text(area, number)} ({room.span})", "", "3.1")
+        if number + length > room.count:
+            last = f"{area}{number_text(area, room.count - 1)}"
+            raise Refused(f"{shown(text)} reaches beyond {last}, the last {area} of {self.model.name}", f"it takes {length} {area} devices", "3.2")
+
+    def _counter_width(self, spec: OperandSpec, device: Device, text: str) -> None:
+        wide = device.number >= self.model.wide_counters
+        if wide and spec.type.words == 1:
+            raise Refused(f"{text} holds 32 bits, {spec.name} ({spec.type.name}) takes 16", f"use C0 to C{self.model.wide_counters - 1}")
+        if not wide and spec.type.words == 2:
+            raise Refused(f"{text} holds 16 bits, {spec.name} ({spec.type.name}) takes 32", f"use C{self.model.wide_counters} to C{self.model.areas['C'].count - 1}")
+
+    def _device_range(self, spec: OperandSpec, device: Device, text: str) -> None:
+        low, high = spec.range
+        if not low <= device.number <= high:
+            raise Refused(f"{text} cannot be {spec.name}", f"{spec.name} goes from {device.area}{low} to {device.area}{high}", "3.1.7")
+
+    def _index(self, spec: OperandSpec, operand: Device | Bits, text: str) -> None:
+        if operand.index is None:
+            return
+        if not spec.indexed:
+            raise Refused(f"{shown(text)}: {spec.name} cannot be indexed", "name the device itself", "3.2.2")
+        if operand.index >= self.model.areas[operand.index_area].count:
+            raise Refused(f"{self.model.name} has no {operand.index_area}{operand.index} ({self.model.areas[operand.index_area].span})", "", "3.2.2")
+
+    def _writable(self, spec: OperandSpec, device: Device, text: str) -> None:
+        model = self.model
+        fixed = {model.special_bits: model.read_only_relays, model.special_words: model.read_only_registers}.get(device.area, ())
+        if any(number in fixed for number in range(device.number, device.number + max(1, spec.type.words))):
+            raise Refused(f"{text} is read only", "the system writes it, programs only read it", "3.1.9" if device.area == model.special_bits else "3.1.10")

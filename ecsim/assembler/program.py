@@ -1,0 +1,117 @@
+"""A program as the engines and views read it: units, instructions with resolved operands, networks and regions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from ..devices import Device, Operand
+from ..instructions import Definition
+from ..models import Model
+from ..values import DataType
+
+
+@dataclass(slots=True)
+class Instruction:
+    """One line of the instruction list, resolved. `position` counts through the whole program and indexes every trace."""
+
+    mnemonic: str
+    definition: Definition
+    operands: tuple[Operand, ...]
+    written: tuple[str, ...]
+    line: int
+    comment: str = ""
+    position: int = 0
+    step: int = 0
+    steps: int = 0
+    slot: int = -1  # where its state of the last scan is kept, -1 when it has none
+
+    def __str__(self) -> str:
+        return " ".join((self.mnemonic, *self.written))
+
+
+@dataclass(slots=True)
+class Variable:
+    """A named device: a global variable of the program or a local one of a subroutine."""
+
+    name: str
+    device: Device
+    comment: str = ""
+    type: DataType | None = None
+    role: str = ""  # locals: INPUT, OUTPUT, IN_OUT, TEMP
+    line: int = 0
+
+
+@dataclass(slots=True)
+class Network:
+    """One rung: the instructions `start` to `end` (not included) of its unit. `region` names what encloses it, outermost first."""
+
+    number: int
+    start: int
+    end: int
+    title: str = ""
+    region: tuple[tuple[str, int], ...] = ()
+
+
+@dataclass(slots=True)
+class Region:
+    """A structure: MC, FOR or a step (STL). `opening` is the index of the instruction that opens it, `closing` of the one that ends it."""
+
+    kind: str
+    number: int
+    opening: int
+    closing: int = -1
+    nodes: list[Network | Region] = field(default_factory=list)
+    steps: tuple[Device, ...] = ()  # STL: the step, or all steps of a join
+    slot: int = -1
+
+
+@dataclass(slots=True)
+class Unit:
+    """The main program, a subroutine or an interrupt program (4.2.1)."""
+
+    kind: str
+    name: str
+    event: int | None = None
+    variables: dict[str, Variable] = field(default_factory=dict)
+    instructions: list[Instruction] = field(default_factory=list)
+    networks: list[Network] = field(default_factory=list)
+    nodes: list[Network | Region] = field(default_factory=list)
+    line: int = 0
+    titles: dict[int, str] = field(default_factory=dict)  # index of an instruction -> the whole-line comments before it
+
+    @property
+    def parameters(self) -> list[Variable]:
+        """The variables that a CALL gives, in order."""
+        return [variable for variable in self.variables.values() if variable.role != "TEMP"]
+
+
+@dataclass
+class Program:
+    """A compiled program of one model; MAIN is the first unit."""
+
+    model: Model
+    source: str
+    units: list[Unit]
+    variables: dict[str, Variable]
+    steps: int = 0
+    slots: int = 0
+
+    @property
+    def main(self) -> Unit:
+        return self.units[0]
+
+    @property
+    def instructions(self) -> list[Instruction]:
+        """All instructions by position."""
+        return [instruction for unit in self.units for instruction in unit.instructions]
+
+    def names(self) -> dict[str, str]:
+        """Canonical device text -> the variable's name."""
+        return {str(variable.device): variable.name for variable in self.variables.values()}
+
+    def unit(self, name: str) -> Unit:
+        """The unit of that name, in any case."""
+        return next(unit for unit in self.units if unit.name.upper() == name.upper())
+
+    def __repr__(self) -> str:
+        return f"<Program {self.model.name}, {len(self.units)} unit{'s' if len(self.units) > 1 else ''}, {self.steps} steps>"

@@ -1,0 +1,232 @@
+"""Text to statements: headers, variables, comments; one instruction a line (DESIGN: instruction list is the canonical form)."""
+
+import re
+from dataclasses import dataclass, field
+
+from ..errors import Problem
+
+_BLOCK = re.compile(r"/\*.*?\*/|\(\*.*?\*\)", re.DOTALL)
+_OPEN_BLOCK = re.compile(r"/\*|\(\*")
+_NAME = re.compile(r"[^\W\d]\w*")
+_TOKEN = re.compile(r"[^\s,]+")
+
+HEADERS = frozenset(
+    "VAR_GLOBAL END_VAR PROGRAM END_PROGRAM SUBROUTINE END_SUBROUTINE INTERRUPT END_INTERRUPT VAR_INPUT VAR_OUTPUT VAR_IN_OUT VAR_TEMP".split()
+)
+
+
+@dataclass(slots=True)
+class Statement:
+    """One instruction as written."""
+
+    mnemonic: str
+    operands: tuple[str, ...]
+    line: int
+    comment: str = ""
+    title: str = ""
+
+
+@dataclass(slots=True)
+class RawVariable:
+    """One line of a variable table: a device for a global, a type for a local variable."""
+
+    name: str
+    what: str
+    role: str
+    line: int
+    comment: str = ""
+
+
+@dataclass(slots=True)
+class RawUnit:
+    """A unit before anything is resolved."""
+
+    kind: str
+    name: str
+    line: int
+    event: str | None = None
+    variables: list[RawVariable] = field(default_factory=list)
+    statements: list[Statement] = field(default_factory=list)
+
+
+@dataclass
+class Source:
+    """A program's text taken apart."""
+
+    text: str
+    name: str = ""
+    globals: list[RawVariable] = field(default_factory=list)
+    units: list[RawUnit] = field(default_factory=list)
+    problems: list[Problem] = field(default_factory=list)
+    lines: list[str] = field(default_factory=list)
+
+    def column(self, line: int, word: int) -> int:
+        """The column, from 1, of the word with that number in a line."""
+        tokens = list(_TOKEN.finditer(self.lines[line - 1].split("//")[0])) if 0 < line <= len(self.lines) else []
+        return tokens[word].start() + 1 if word < len(tokens) else 0
+
+    def report(self, line: int, message: str, hint: str = "", section: str = "", word: int = 0) -> None:
+        """Note one problem."""
+        self.problems.append(Problem(line, self.column(line, word), message, hint, section, self.name))
+
+
+def shown(text: str, limit: int = 40) -> str:
+    """`text` fit for a message: quoted, without control characters, not longer than `limit`."""
+    clean = "".join(ch if ch.isprintable() else "?" for ch in text)
+    return repr(clean if len(clean) <= limit else clean[: limit - 3] + "...")
+
+
+def read(text: str, name: str = "") -> Source:
+    """Take a program's text apart; what cannot be read is noted in `problems`."""
+    return _Reader(text, name).read()
+
+
+class _Reader:
+    def __init__(self, text: str, name: str):
+        self.source = Source(text, name)
+        self.unit: RawUnit | None = None
+        self.implicit: RawUnit | None = None
+        self.in_globals = False
+        self.title: list[str] = []
+
+    def read(self) -> Source:
+        source = self.source
+        text = source.text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
+        source.lines = lines = self._without_blocks(text).split("\n")
+        for number, line in enumerate(lines, 1):
+            code, slashes, comment = line.partition("//")
+            words = (code.replace(",", " ") if "," in code else code).split()
+            if not words:
+                if slashes:
+                    self.title.append(comment.strip())
+                elif not line.strip():
+                    self.title = []
+                continue
+            self._line(words, comment.strip(), number)
+        if self.unit is not None:
+            source.report(self.unit.line, f"{self.unit.kind} {self.unit.name} has no end", f"write END_{self._header(self.unit)} after its last line")
+        if self.in_globals:
+            source.report(len(lines), "VAR_GLOBAL has no END_VAR")
+        return source
+
+    def _without_blocks(self, text: str) -> str:
+        """Block comments become blanks; one that fills its lines becomes a `//` comment, so that it can be a title."""
+        if "/*" not in text and "(*" not in text:
+            return text
+        # A // comment may speak of /*: it is left alone.
+        pieces, position = [], 0
+        while True:
+            opened = _OPEN_BLOCK.search(text, position)
+            if opened is None:
+                return "".join(pieces) + text[position:]
+            start = opened.start()
+            line_start = text.rfind("\n", 0, start) + 1
+            slashes = text.find("//", max(line_start, position), start)
+            if slashes >= 0:
+                end = text.find("\n", start)
+                end = len(text) if end < 0 else end
+                pieces.append(text[position:end])
+                position = end
+                continue
+            match = _BLOCK.match(text, start)
+            if match is None:
+                self.source.lines = text.split("\n")
+                self.source.report(text.count("\n", 0, start) + 1, "a comment is not closed", f"end it with {'*/' if opened[0] == '/*' else '*)'}")
+                return "".join(pieces) + text[position:start]
+            after = text[match.end() : (text.find("\n", match.end()) + len(text) + 1) % (len(text) + 1)]
+            alone = not text[line_start:start].strip() and not after.strip()
+            inner = match[0][2:-2].split("\n")
+            filler = "\n".join(f"// {part.strip()}" if alone and part.strip() else "" for part in inner)
+            pieces.append(text[position:start] + (filler if alone else " " + "\n" * (len(inner) - 1) + " "))
+            position = match.end()
+
+    def _line(self, words: list[str], comment: str, number: int) -> None:
+        head = words[0].upper()
+        if head in HEADERS:
+            self._directive(head, words, comment, number)
+        elif self.in_globals:
+            self._global(words, comment, number)
+        else:
+            unit = self.unit or self._implicit(number)
+            unit.statements.append(Statement(head, tuple(words[1:]), number, comment, "\n".join(self.title)))
+        self.title = []
+
+    def _implicit(self, number: int) -> RawUnit:
+        """The unit that instructions without a header belong to: the main program."""
+        if self.implicit is None:
+            if any(unit.kind == "MAIN" for unit in self.source.units):
+                self.source.report(number, "an instruction stands outside every unit", "put it between PROGRAM MAIN and END_PROGRAM")
+            self.implicit = RawUnit("MAIN", "MAIN", number)
+            if not any(unit.kind == "MAIN" for unit in self.source.units):
+                self.source.units.append(self.implicit)
+        return self.implicit
+
+    @staticmethod
+    def _header(unit: RawUnit) -> str:
+        return "PROGRAM" if unit.kind == "MAIN" else unit.kind
+
+    def _directive(self, head: str, words: list[str], comment: str, number: int) -> None:
+        report = self.source.report
+        if head in ("PROGRAM", "SUBROUTINE", "INTERRUPT"):
+            self._open(head, words, number)
+        elif head.startswith("END_") and head != "END_VAR":
+            if self.unit is None or head != f"END_{self._header(self.unit)}":
+                report(number, f"{head} ends nothing", f"open it with {head[4:]} NAME first")
+            self.unit = None
+        elif head == "VAR_GLOBAL":
+            if self.unit is not None or self.in_globals:
+                report(number, "VAR_GLOBAL stands inside another block", "the variables of the whole program come before PROGRAM MAIN")
+            self.in_globals = True
+            if len(words) > 1:
+                self._global(words[1:], comment, number)
+        elif head == "END_VAR":
+            # Locals are declared a line each; an END_VAR after them is accepted, as IEC texts have it.
+            if not self.in_globals and self.unit is None:
+                report(number, "END_VAR ends nothing")
+            self.in_globals = False
+        else:
+            self._local(head.removeprefix("VAR_"), words, comment, number)
+
+    def _open(self, head: str, words: list[str], number: int) -> None:
+        report = self.source.report
+        kind = "MAIN" if head == "PROGRAM" else head
+        name = words[1] if len(words) > 1 else ""
+        if self.unit is not None:
+            report(number, f"{head} inside {self.unit.kind} {self.unit.name}", f"close it with END_{self._header(self.unit)} first")
+        if self.in_globals:
+            report(number, "VAR_GLOBAL has no END_VAR")
+            self.in_globals = False
+        if not _NAME.fullmatch(name):
+            report(number, f"{head} needs a name, found {shown(name)}", "for example PROGRAM MAIN, SUBROUTINE SBR_1 or INTERRUPT INT_1 EVENT 26", word=1)
+        event = None
+        if kind == "INTERRUPT":
+            if len(words) == 4 and words[2].upper() == "EVENT":
+                event = words[3]
+            else:
+                report(number, f"{head} {name} names no event", "write INTERRUPT INT_1 EVENT 26, for example", "9.1")
+        elif len(words) > 2:
+            report(number, f"{shown(words[2])} is not expected after {head} {name}", word=2)
+        if kind == "MAIN" and any(unit.kind == "MAIN" for unit in self.source.units):
+            report(number, "there is a second main program", "one PROGRAM MAIN, the others are subroutines")
+        self.unit = RawUnit(kind, name, number, event)
+        if kind == "MAIN":
+            self.source.units.insert(0, self.unit)
+        else:
+            self.source.units.append(self.unit)
+
+    def _global(self, words: list[str], comment: str, number: int) -> None:
+        if len(words) == 3 and words[1].upper() == "AT":
+            self.source.globals.append(RawVariable(words[0], words[2].rstrip(";"), "GLOBAL", number, comment))
+        else:
+            self.source.report(number, f"{shown(' '.join(words))} declares no variable", "write NAME AT DEVICE, for example Start AT X0")
+
+    def _local(self, role: str, words: list[str], comment: str, number: int) -> None:
+        unit = self.unit
+        if unit is None:
+            self.source.report(number, f"VAR_{role} stands outside a subroutine", "declare it after SUBROUTINE NAME")
+            return
+        declaration = " ".join(words[1:]).replace(":", " : ").rstrip(";").split()
+        if len(declaration) == 3 and declaration[1] == ":":
+            unit.variables.append(RawVariable(declaration[0], declaration[2].upper(), role, number, comment))
+        elif declaration:
+            self.source.report(number, f"{shown(' '.join(words))} declares no variable", f"write VAR_{role} NAME : INT, for example")

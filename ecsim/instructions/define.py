@@ -1,0 +1,96 @@
+"""TABLE: every instruction, defined once by a decorated function in the module of its chapter.
+
+Five forms, told apart by what the function is given:
+
+    contact   operand values -> bool                       joined to the power flow
+    value     operand values -> new value(s)               while the flow is ON
+    always    the flow, a timer or counter, values         in every scan
+    command   a hardware unit, what the flow does, values  while the flow is ON and once after
+    emitted   the code being written, the operands         the structure of the program
+
+The functions of the first three forms are pure text to the engines as well: `engines/template.py` reads their bodies,
+so they keep to arithmetic, comparisons, `if` and attributes of the unit they were handed.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from .signature import OperandSpec, parse_signature
+
+RESULT = ("zero", "carry", "borrow")
+BOTH = ("EC10", "EC20")
+
+
+@dataclass(frozen=True, slots=True)
+class Definition:
+    """One row of TABLE: what checker, engines, views, help and tests know of an instruction."""
+
+    mnemonic: str
+    form: str
+    operands: tuple[OperandSpec, ...]
+    steps: int | None
+    section: str
+    function: Callable
+    join: str | None = None  # contacts: "LD", "AND" or "OR"
+    flags: tuple[str, ...] = ()  # set by the result
+    given: tuple[str, ...] = ()  # of these, the ones that the function returns itself
+    models: tuple[str, ...] = BOTH
+    cleared: bool = False  # its destination is cleared when its MC is OFF or its step has been left (5.2.1, 5.3.1)
+    application: bool = False  # an instruction of chapter 6: executed correctly it clears SM20 and SM22
+    resets: bool = False  # an OFF written to a T or C clears its value too (5.1.17)
+    transition_steps: int | None = None  # its length where it leads to, or clears, a step (5.3.2 to 5.3.4)
+    bus: bool = False  # stands on the left bus, without a flow before it
+    faults: tuple[int, ...] = ()
+    check: Callable | None = None  # (values of the constant operands) -> what is wrong with them, or None
+
+    @property
+    def title(self) -> str:
+        """The first sentence of the docstring."""
+        return (self.function.__doc__ or "").strip().splitlines()[0]
+
+    @property
+    def outputs(self) -> bool:
+        """Whether it uses a power flow and belongs at the right of a rung."""
+        return self.form != "contact" and not self.bus
+
+
+TABLE: dict[str, Definition] = {}
+
+
+def _define(form: str, mnemonic: str, signature: str, steps: int | None, section: str, **columns) -> Callable[[Callable], Callable]:
+    operands, given = parse_signature(signature)
+    columns["flags"] = tuple(dict.fromkeys((*columns.get("flags", ()), *given)))
+    columns.setdefault("application", section.startswith("6."))
+
+    def decorate(function: Callable) -> Callable:
+        if mnemonic in TABLE:
+            raise ValueError(f"{mnemonic} is defined twice")
+        TABLE[mnemonic] = Definition(mnemonic, form, operands, steps, section, function, given=given, **columns)
+        return function
+
+    return decorate
+
+
+def contact(mnemonic: str, signature: str, *, join: str, steps: int, section: str, **columns):
+    """A contact: the function tells from the operand values whether it is closed; `join` says how it meets the flow."""
+    return _define("contact", mnemonic, signature, steps, section, join=join, **columns)
+
+
+def value(mnemonic: str, signature: str, *, steps: int, section: str, **columns):
+    """While the flow is ON the function's result is wrapped and stored; `flags` tell about the exact result."""
+    return _define("value", mnemonic, signature, steps, section, **columns)
+
+
+def always(mnemonic: str, signature: str, *, steps: int, section: str, **columns):
+    """Executed in every scan with the flow, ON or OFF; what it returns, if anything, is the flow that goes on."""
+    return _define("always", mnemonic, signature, steps, section, **columns)
+
+
+def command(mnemonic: str, signature: str, *, steps: int, section: str, **columns):
+    """The function gets the machine and the operand values while the flow is ON."""
+    return _define("command", mnemonic, signature, steps, section, **columns)
+
+
+def emitted(mnemonic: str, signature: str, *, steps: int | None, section: str, **columns):
+    """The function writes the program's structure through the engine's writer (`engines/writer.py`)."""
+    return _define("emitted", mnemonic, signature, steps, section, **columns)

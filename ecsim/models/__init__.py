@@ -1,0 +1,20 @@
+"""The models by name."""
+
+from ..errors import EcsimError
+from .ec import EC10, EC20
+from .model import Area, Model
+
+MODELS = {model.name: model for model in (EC10, EC20)}
+
+
+def get_model(name: "str | Model") -> Model:
+    """The model of that name, in any case; a Model is handed through."""
+    if isinstance(name, Model):
+        return name
+    model = MODELS.get(str(name).upper())
+    if model is None:
+        raise EcsimError(f"there is no model {name!r}; ecsim knows {' and '.join(MODELS)}")
+    return model
+
+
+__all__ = ["MODELS", "Area", "Model", "get_model"]

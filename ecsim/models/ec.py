@@ -1,0 +1,72 @@
+"""Emerson EC10 and EC20 (chapters 1 to 3, appendices 1 and 2)."""
+
+from dataclasses import replace
+
+from ..devices import Syntax
+from .model import Area, Model
+
+
+def _areas(x: int, y: int, m: int, s: int) -> dict[str, Area]:
+    rows = (
+        ("X", x, "bit"), ("Y", y, "bit"), ("M", m, "bit"), ("S", s, "bit"), ("LM", 64, "bit"), ("SM", 256, "bit"),
+        ("T", 256, "timer"), ("C", 256, "counter"),
+        ("D", 8000, "word"), ("SD", 256, "word"), ("V", 64, "word"), ("Z", 16, "word"),
+    )  # fmt: skip
+    return {name: Area(name, count, kind) for name, count, kind in rows}
+
+
+def _numbers(*runs: int | tuple[int, int]) -> frozenset[int]:
+    """Single numbers and inclusive runs as one set."""
+    return frozenset(n for run in runs for n in (range(run[0], run[1] + 1) if isinstance(run, tuple) else (run,)))
+
+
+_BITS = frozenset({"X", "Y", "M", "S", "LM", "SM"})
+
+EC20 = Model(
+    name="EC20",
+    family="EC",
+    areas=_areas(x=0o400, y=0o400, m=2000, s=992),
+    syntax=Syntax(areas=_BITS | {"T", "C", "D", "SD", "V", "Z"}, bit_areas=_BITS),
+    timer_bases=((0, 209, 100_000), (210, 251, 10_000), (252, 255, 1_000)),
+    fast_timers=(252, 255),
+    wide_counters=200,
+    initial_steps=20,
+    relays={
+        "running": 0, "first scan": 1, "power up": 2, "system error": 3, "constant scan": 8,
+        "clock 10 ms": 10, "clock 100 ms": 11, "clock 1 s": 12, "clock 1 min": 13, "clock 1 h": 14, "scan toggle": 15,
+        "fault": 20, "fault range": 21, "fault operand": 22, "zero": 180, "carry": 181, "borrow": 182,
+        "counter direction": 0,  # SM(n) for C(n): appendix 1, section 17
+    },
+    registers={
+        "type": 0, "version": 1, "capacity": 2, "system error": 3, "faults": 20,
+        "scan time": 30, "least scan time": 31, "greatest scan time": 32, "constant scan": 33, "watchdog": 34, "input filter": 35,
+    },
+    read_only_relays=_numbers((0, 15), (20, 22), 82, 83, 114, 124, (140, 171), (190, 193), 196),
+    read_only_registers=_numbers((0, 5), (7, 12), (20, 26), (30, 35), 56, 57, (100, 106), 110, (115, 118), 120, (125, 128), 139, 172, 174, 191, 192),
+    limits={
+        "steps": 12_000, "MC nesting": 7, "FOR nesting": 8, "CALL nesting": 6, "subroutines": 64, "labels": 128, "joined steps": 16,
+        "flows": 20, "bit variables": 16, "word variables": 16, "global variables": 500, "name bytes": 8, "stack": 8,
+    },
+    filter_inputs=0o20,
+    filter_ms=10,
+    filter_choices=tuple(range(61)),
+    instruction_ns=90,
+    retained=("D", "M", "S", "T", "C"),
+    type_code=20,
+    retention_limits={"ranges": 2, "counters": 200},
+)  # fmt: skip
+
+EC10 = replace(
+    EC20,
+    name="EC10",
+    areas=_areas(x=0o200, y=0o200, m=2048, s=1024),
+    limits=EC20.limits | {"global variables": 140},
+    filter_inputs=0o10,
+    filter_ms=8,
+    filter_choices=(0, 8, 16, 32, 64),
+    instruction_ns=300,
+    retained=("D", "M", "S", "C"),
+    type_code=10,
+    step_surcharge=("M", 1536),  # 5.1.1: a contact on M1536 to M2047 is one step longer
+    retention_limits={"ranges": 1, "bits": 320, "words": 180},
+)  # fmt: skip

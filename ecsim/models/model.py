@@ -1,0 +1,58 @@
+"""What one model of PLC is, as data: its devices, relays, registers, limits and the spelling of its programs."""
+
+from dataclasses import dataclass, field
+
+from ..devices import Syntax, number_text
+
+
+@dataclass(frozen=True, slots=True)
+class Area:
+    """A kind of device: `count` of them, `kind` is bit, word, timer or counter."""
+
+    name: str
+    count: int
+    kind: str
+
+    @property
+    def span(self) -> str:
+        """The range in words: "X0 to X377"."""
+        return f"{self.name}0 to {self.name}{number_text(self.name, self.count - 1)}"
+
+
+@dataclass(frozen=True)
+class Model:
+    """One PLC model. Meanings ("carry") are keys, devices are values, so that another family is another table."""
+
+    name: str
+    family: str
+    areas: dict[str, Area]
+    syntax: Syntax
+    timer_bases: tuple[tuple[int, int, int], ...]  # first, last, time unit in us
+    fast_timers: tuple[int, int]  # counted by interrupt, not by the scan (3.1.6)
+    wide_counters: int  # from this number on counters have 32 bits
+    initial_steps: int
+    relays: dict[str, int]  # meaning -> number of the special relay
+    registers: dict[str, int]  # meaning -> number of the special register
+    read_only_relays: frozenset[int]
+    read_only_registers: frozenset[int]
+    limits: dict[str, int]
+    filter_inputs: int
+    filter_ms: int
+    filter_choices: tuple[int, ...]
+    instruction_ns: int
+    retained: tuple[str, ...]
+    special_bits: str = "SM"
+    special_words: str = "SD"
+    high_word_first: bool = True
+    type_code: int = 0
+    step_surcharge: tuple[str, int] | None = None  # contacts on this area from this number on are one step longer
+    spelling: dict[str, str] = field(default_factory=dict)  # how this family writes a mnemonic -> how TABLE has it
+    retention_limits: dict[str, int] = field(default_factory=dict)
+
+    def timer_base_us(self, number: int) -> int:
+        """The time unit of a timer in microseconds."""
+        return next(base for first, last, base in self.timer_bases if first <= number <= last)
+
+    def flag(self, meaning: str) -> tuple[str, int]:
+        """Area and number of a special relay by meaning."""
+        return self.special_bits, self.relays[meaning]
