@@ -246,7 +246,7 @@ def server_command(port, page, browser):
     """Return the command that serves JupyterLab to this machine alone."""
     command = [str(PYTHON), "-m", "jupyterlab", "--ServerApp.ip=127.0.0.1", f"--ServerApp.port={port}", "--ServerApp.port_retries=0"]
     command += [f"--ServerApp.root_dir={ROOT}", f"--LabApp.default_url=/{page}", "--Application.log_level=WARN"]
-    command += [f"--ServerApp.open_browser={browser}", "--ServerApp.allow_remote_access=False"]
+    command += [f"--ServerApp.open_browser={browser}", "--LanguageServerManager.autodetect=False"]  # that search starts npm and others
     if hasattr(os, "geteuid") and os.geteuid() == 0:
         command.append("--allow-root")  # Jupyter refuses root otherwise, and a container has no one else
     return command
