@@ -115,7 +115,7 @@ def make_environment():
         return
     started = time.monotonic()
     uv = shutil.which("uv")
-    say("ecsim: making the environment in .venv (once; about half a minute and 700 MB)")
+    say("ecsim: making the environment in .venv (once; about half a minute and 600 MB)")
     if not usable(PYTHON):
         create_venv(uv)
     STAMP.unlink(missing_ok=True)

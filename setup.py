@@ -13,10 +13,9 @@ ROOT = Path(__file__).parent
 FOLDERS = {"ecsim": "ecsim", "ecsim_widgets": "widgets", "ecsim_exercises": "exercises"}
 NOT_CODE = ["*.js", "*.css", "*.il", "*.md", "*.svg", "*.json", "*.toml", "*.txt", "*.html"]
 
-present = {package: folder for package, folder in FOLDERS.items() if (ROOT / folder).is_dir()}
 packages = []
-for package, folder in present.items():
+for package, folder in FOLDERS.items():
     below = find_namespace_packages(str(ROOT / folder), exclude=["*__pycache__*", "*.ipynb_checkpoints*"])
     packages += [package, *(f"{package}.{name}" for name in below)]
 
-setup(packages=packages, package_dir=present, package_data={"": NOT_CODE})
+setup(packages=packages, package_dir=FOLDERS, package_data={"": NOT_CODE})
