@@ -343,7 +343,7 @@ def test_parts(quick, expression, pytest_arguments):
         return [Part("tests", [*pytest, *chosen, *pytest_arguments])]
     left_out = "left out by --quick" if quick else ""
     several = ["-n", str(min(os.cpu_count() or 1, 8)), "--dist", "loadfile"]
-    nbval = ["--nbval", "--nbval-current-env", "--nbval-cell-timeout=120", "-p", "no:cacheprovider"]
+    nbval = ["--nbval", "--nbval-current-env", "--nbval-cell-timeout=120"]
     no_notebooks = "" if any((ROOT / "notebooks").glob("*.ipynb")) else "no notebook in notebooks/"
     no_chromium = "" if find_chromium() else NO_CHROMIUM
     return [
