@@ -7,7 +7,7 @@ system has it, the usual idiom where it has not, and in doubt the faster of two.
 awlsim and pyrung live in an environment of their own, since pyrung needs an older pymodbus than ecsim:
 
     python bench/peers.py install             both, as their wheels and sources come
-    python bench/peers.py install --cython    awlsim with its core compiled; ten minutes and a C compiler
+    python bench/peers.py install --cython    awlsim with its core compiled; a quarter of an hour and a C compiler
 
 `speed.py` finds that environment and runs `python bench/peers.py serve` in it, which answers one JSON line with another.
 """
@@ -214,10 +214,9 @@ class Awl:
 
     def inputs(self, states: list[bool]) -> None:
         packed = sum(state << place for place, state in enumerate(states))
-        self.store(bytearray(packed.to_bytes(INPUTS // 8, "little")))
-
-    def store(self, image: bytearray) -> None:
-        self.cpu.storeInputRange(0, image)
+        image = self.cpu.inputs.getDataBytes()
+        image[: INPUTS // 8] = packed.to_bytes(INPUTS // 8, "little")
+        self.cpu.inputs.setDataBytes(image)
 
     def scan(self, count: int) -> None:
         for _ in range(count):
