@@ -1,0 +1,13 @@
+"""ecsim: Emerson EC10 and EC20 PLCs, simulated in exact time."""
+
+from .assembler import Program, assemble
+from .errors import EcsimError, ProgramError
+from .plc import Plc, SystemBlock
+
+__version__ = "0.1.0"
+__all__ = ["EcsimError", "Plc", "Program", "ProgramError", "SystemBlock", "compile"]
+
+
+def compile(text: str, model: str = "EC20") -> Program:  # noqa: A001 - the public name of the act
+    """The program that `text` spells, for a model; raises ProgramError with all errors."""
+    return assemble(text, model)

@@ -144,6 +144,8 @@ class Resolver:
             return
         if not spec.indexed:
             raise Refused(f"{shown(text)}: {spec.name} cannot be indexed", "name the device itself", "3.2.2")
+        if operand.area in (self.model.special_bits, self.model.special_words):
+            raise Refused(f"{shown(text)}: special relays and registers cannot be indexed", "name the device itself", "3.2.2")
         if operand.index >= self.model.areas[operand.index_area].count:
             raise Refused(f"{self.model.name} has no {operand.index_area}{operand.index} ({self.model.areas[operand.index_area].span})", "", "3.2.2")
 

@@ -291,6 +291,11 @@ class _Transitions:
     def check(self) -> None:
         transitions = list(self._transitions())
         reached = {target.number for _, instruction, target, _ in transitions if instruction.mnemonic == "SET"}
+        links: dict[int, set[int]] = {}
+        for region, instruction, target, _ in transitions:
+            if instruction.mnemonic == "SET":
+                for source in region.steps:
+                    links.setdefault(source.number, set()).add(target.number)
         order = {number: place for place, number in enumerate(self.steps)}
         for region, instruction, target, section in transitions:
             if target.number not in self.steps:
@@ -302,8 +307,26 @@ class _Transitions:
                     self.report(instruction, f"{instruction} goes back", f"a jump is written OUT {target}", "7.4.1(6)")
                 elif self._section(target.number) != section:
                     self.report(instruction, f"{instruction} leads into another flow", f"a jump is written OUT {target}", "7.4.1(6)")
+                elif self._reached_another_way(sources, target.number, links):
+                    self.report(instruction, f"{instruction} leaves out the steps between", f"a jump is written OUT {target}", "7.4.1(6)")
             elif not back and target.number not in reached and self._section(target.number) == section and self._follows(target.number, sources, order):
                 self.report(instruction, f"{instruction} leads to the adjacent step", f"a transition is written SET {target}", "7.4.1(6)")
+
+    @staticmethod
+    def _reached_another_way(sources: list[int], target: int, links: dict[int, set[int]]) -> bool:
+        """Whether transitions lead from the sources to the target by way of other steps too."""
+        seen: set[int] = set()
+        waiting = [step for source in sources for step in links.get(source, ()) if step != target]
+        while waiting:
+            step = waiting.pop()
+            if step in seen:
+                continue
+            seen.add(step)
+            following = links.get(step, set())
+            if target in following:
+                return True
+            waiting += following
+        return False
 
     def _follows(self, target: int, sources: list[int], order: dict[int, int]) -> bool:
         return target >= self.initial_steps and order[target] == max(order.get(source, -1) for source in sources) + 1

@@ -53,6 +53,7 @@ EC20 = Model(
     instruction_ns=90,
     retained=("D", "M", "S", "T", "C"),
     type_code=20,
+    initial_registers={25: 255, 26: 255},
     retention_limits={"ranges": 2, "counters": 200},
 )  # fmt: skip
 

@@ -47,6 +47,7 @@ class Model:
     type_code: int = 0
     step_surcharge: tuple[str, int] | None = None  # contacts on this area from this number on are one step longer
     spelling: dict[str, str] = field(default_factory=dict)  # how this family writes a mnemonic -> how TABLE has it
+    initial_registers: dict[int, int] = field(default_factory=dict)
     retention_limits: dict[str, int] = field(default_factory=dict)
 
     def timer_base_us(self, number: int) -> int:

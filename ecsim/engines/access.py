@@ -1,0 +1,292 @@
+"""Operands as Python source: how a device is read and written in generated code, and the functions that code calls."""
+
+from ..devices import Bits, Constant, Device, Operand
+from ..errors import OPERAND, RANGE, Fault
+from ..memory import Memory
+from ..models import Model
+from ..values import BOOL, REAL, DataType, join, real_from_words, signed16, single, split, words_from_real
+
+
+class Access:
+    """Writes the source that reads and writes the operands of one model."""
+
+    def __init__(self, model: Model):
+        self.model = model
+
+    def bits(self, area: str) -> str:
+        """The list that holds an area's bits."""
+        return f"{area}B" if area in ("T", "C") else area
+
+    def limits(self, kind: DataType, area: str) -> tuple[int, int]:
+        """First and last+1 number that an indexed operand may reach."""
+        count = self.model.areas[area].count
+        if area == "C" and kind.words:
+            return (0, self.model.wide_counters) if kind.words == 1 else (self.model.wide_counters, count)
+        return 0, count
+
+    @staticmethod
+    def index(operand: Device | Bits) -> str:
+        """The source of an indexed operand's number."""
+        return f"{operand.number} + {operand.index_area}[{operand.index}]"
+
+    def can_fault(self, operand: Operand) -> bool:
+        """Whether reaching the operand can end as error 65."""
+        return getattr(operand, "index", None) is not None
+
+    # -- reading ------------------------------------------------------------------------------------------------
+
+    def load(self, kind: DataType, operand: Operand) -> str:
+        """An expression, safe to stand anywhere, for the value of an operand read as `kind`."""
+        if isinstance(operand, Constant):
+            return self.constant(kind, operand)
+        if isinstance(operand, Bits):
+            return self._load_bits(kind, operand)
+        if operand.index is not None:
+            return self._load_indexed(kind, operand)
+        area, number = operand.area, operand.number
+        if kind is BOOL:
+            return f"{self.bits(area)}[{number}]"
+        if kind.words == 1 or area in ("T", "C"):
+            text = f"{area}[{number}]"
+            return text if kind.signed else f"({text} & {kind.high})"
+        high, low = self._pair(f"{area}[{number}]", f"{area}[{number + 1}]")
+        return self._wide(kind, high, low)
+
+    @staticmethod
+    def constant(kind: DataType, constant: Constant) -> str:
+        """A constant as the type reads it: 16#FFFF is -1 as INT and 65535 as WORD."""
+        value = constant.value
+        if kind is REAL:
+            return f"({single(float(value))!r})"
+        value &= (1 << kind.bits) - 1 if kind.bits > 1 else 1
+        if value > kind.high:
+            value -= 1 << kind.bits
+        return f"({value})" if value < 0 else str(value)
+
+    def _pair(self, first: str, second: str) -> tuple[str, str]:
+        return (first, second) if self.model.high_word_first else (second, first)
+
+    @staticmethod
+    def _wide(kind: DataType, high: str, low: str) -> str:
+        if kind is REAL:
+            return f"real_from_words({high}, {low})"
+        if kind.signed:
+            return f"({high} << 16 | {low} & 65535)"
+        return f"(({high} & 65535) << 16 | {low} & 65535)"
+
+    def _load_bits(self, kind: DataType, bits: Bits) -> str:
+        width = 4 * bits.digits
+        if bits.index is not None:
+            return f"at_bits({bits.area}, {self.index(bits)}, {width}, {kind.signed and width == kind.bits})"
+        parts = [f"{bits.area}[{bits.number + place}]" + (f" << {place}" if place else "") for place in range(width)]
+        text = " | ".join(parts)
+        if kind.signed and width == kind.bits:
+            return f"(({text}) - ({bits.area}[{bits.number + width - 1}] << {width}))"
+        return f"({text})"
+
+    def _load_indexed(self, kind: DataType, device: Device) -> str:
+        low, high = self.limits(kind, device.area)
+        values = self.bits(device.area) if kind is BOOL else device.area
+        if kind.words == 2 and device.area not in ("T", "C"):
+            return f"at_{kind.name.lower()}({values}, {self.index(device)}, {high})"
+        text = f"at({values}, {self.index(device)}, {low}, {high})"
+        return text if kind is BOOL or kind.signed else f"({text} & {kind.high})"
+
+    # -- writing ------------------------------------------------------------------------------------------------
+
+    def store(self, kind: DataType, operand: Device | Bits, text: str) -> list[str]:
+        """Statements that write `text`, a name or an expression that stands once, of the signed range of `kind`'s width."""
+        if isinstance(operand, Bits):
+            width = 4 * operand.digits
+            if operand.index is not None:
+                return [f"put_bits({operand.area}, {self.index(operand)}, {width}, {text})"]
+            return [f"{operand.area}[{operand.number}:{operand.number + width}] = bits_of({text}, {width})"]
+        if operand.index is not None:
+            return self._store_indexed(kind, operand, text)
+        area, number = operand.area, operand.number
+        if kind is BOOL:
+            return [f"{self.bits(area)}[{number}] = {text}"]
+        if kind.words == 1 or area in ("T", "C"):
+            return [f"{area}[{number}] = {text}"]
+        first, second = self._pair(f"{area}[{number}]", f"{area}[{number + 1}]")
+        return [f"{first}, {second} = {'words_from_real' if kind is REAL else 'split'}({text})"]
+
+    def _store_indexed(self, kind: DataType, device: Device, text: str) -> list[str]:
+        low, high = self.limits(kind, device.area)
+        values = self.bits(device.area) if kind is BOOL else device.area
+        guard = {self.model.special_bits: "READ_ONLY_BITS", self.model.special_words: "READ_ONLY_WORDS"}.get(device.area, "()")
+        if kind.words == 2 and device.area not in ("T", "C"):
+            return [f"put_{'real' if kind is REAL else 'dint'}({values}, {self.index(device)}, {high}, {text}, {guard})"]
+        return [f"put({values}, {self.index(device)}, {low}, {high}, {text}, {guard})"]
+
+    def reset(self, operand: Device) -> list[str]:
+        """Statements that turn a bit OFF; of a timer or counter they clear the value too (5.1.17)."""
+        number = operand.number
+        lines = [f"{self.bits(operand.area)}[{number}] = False"]
+        if operand.area == "T":
+            lines.append(f"T[{number}] = DUE[{number}] = REST[{number}] = 0")
+        elif operand.area == "C":
+            lines.append(f"C[{number}] = 0")
+        return lines
+
+    # -- spans --------------------------------------------------------------------------------------------------
+
+    def load_span(self, kind: DataType, operand: Operand, count: str) -> str:
+        """An expression for a list of `count` values from an operand on."""
+        if isinstance(operand, Constant):
+            return f"[{self.constant(kind, operand)}] * {count}"
+        low, high = self.limits(kind, operand.area)
+        number = self.index(operand) if operand.index is not None else str(operand.number)
+        if isinstance(operand, Bits):
+            return f"span_bits({operand.area}, {number}, {4 * operand.digits}, {count}, {kind.signed and 4 * operand.digits == kind.bits})"
+        values = self.bits(operand.area) if kind is BOOL else operand.area
+        if kind.words == 2 and operand.area not in ("T", "C"):
+            return f"span_{kind.name.lower()}({values}, {number}, {count}, {high})"
+        text = f"span({values}, {number}, {count}, {high})"
+        return text if kind is BOOL or kind.signed else f"[word & {kind.high} for word in {text}]"
+
+    def store_span(self, kind: DataType, operand: Device | Bits, text: str, resets: bool) -> list[str]:
+        """Statements that write a list of values, each in the signed range of `kind`'s width, from an operand on."""
+        low, high = self.limits(kind, operand.area)
+        number = self.index(operand) if operand.index is not None else str(operand.number)
+        if isinstance(operand, Bits):
+            return [f"put_span_bits({operand.area}, {number}, {4 * operand.digits}, {text})"]
+        if resets and operand.area in ("T", "C"):
+            return [f"reset_span({operand.area!r}, {number}, {text}, {high})"]
+        values = self.bits(operand.area) if kind is BOOL else operand.area
+        guard = {self.model.special_bits: "READ_ONLY_BITS", self.model.special_words: "READ_ONLY_WORDS"}.get(operand.area, "()")
+        if kind.words == 2 and operand.area not in ("T", "C"):
+            return [f"put_span_{'real' if kind is REAL else 'dint'}({values}, {number}, {text}, {high}, {guard})"]
+        return [f"put_span({values}, {number}, {text}, {high}, {guard})"]
+
+
+def functions(memory: Memory) -> dict[str, object]:
+    """What generated code calls to reach memory where a plain list access is not enough; a bad number raises Fault(65)."""
+    model, lists = memory.model, memory.lists
+    first = 0 if model.high_word_first else 1
+
+    def at(values, number, low, high):
+        if low <= number < high:
+            return values[number]
+        raise Fault(RANGE)
+
+    def pair(values, number, high):
+        if 0 <= number < high - 1:
+            return values[number + first], values[number + 1 - first]
+        raise Fault(RANGE)
+
+    def at_dint(values, number, high):
+        return join(*pair(values, number, high))
+
+    def at_dword(values, number, high):
+        return join(*pair(values, number, high)) & 0xFFFF_FFFF
+
+    def at_real(values, number, high):
+        return real_from_words(*pair(values, number, high))
+
+    def at_bits(values, number, width, signed):
+        if not 0 <= number <= len(values) - width:
+            raise Fault(RANGE)
+        value = 0
+        for bit in reversed(values[number : number + width]):
+            value = value << 1 | bit
+        return value - (1 << width) if signed and values[number + width - 1] else value
+
+    def bits_of(value, width):
+        return [value >> place & 1 == 1 for place in range(width)]
+
+    def put(values, number, low, high, value, guard):
+        if not low <= number < high or number in guard:
+            raise Fault(RANGE)
+        values[number] = value
+
+    def put_pair(values, number, high, words, guard):
+        if not 0 <= number < high - 1 or number in guard or number + 1 in guard:
+            raise Fault(RANGE)
+        values[number + first], values[number + 1 - first] = words
+
+    def put_dint(values, number, high, value, guard):
+        put_pair(values, number, high, split(value), guard)
+
+    def put_real(values, number, high, value, guard):
+        put_pair(values, number, high, words_from_real(value), guard)
+
+    def put_bits(values, number, width, value):
+        if not 0 <= number <= len(values) - width:
+            raise Fault(RANGE)
+        values[number : number + width] = bits_of(value, width)
+
+    def counted(count):
+        if count < 0:
+            raise Fault(OPERAND)
+        return count
+
+    def span(values, number, count, high):
+        if not 0 <= number <= high - counted(count):
+            raise Fault(RANGE)
+        return values[number : number + count]
+
+    def span_dint(values, number, count, high):
+        words = span(values, number, 2 * count, high)
+        return [join(words[i + first], words[i + 1 - first]) for i in range(0, 2 * count, 2)]
+
+    def span_dword(values, number, count, high):
+        return [value & 0xFFFF_FFFF for value in span_dint(values, number, count, high)]
+
+    def span_real(values, number, count, high):
+        words = span(values, number, 2 * count, high)
+        return [real_from_words(words[i + first], words[i + 1 - first]) for i in range(0, 2 * count, 2)]
+
+    def span_bits(values, number, width, count, signed):
+        if not 0 <= number <= len(values) - width * counted(count):
+            raise Fault(RANGE)
+        return [at_bits(values, number + width * i, width, signed) for i in range(count)]
+
+    def put_span(values, number, new, high, guard):
+        if not 0 <= number <= high - len(new) or (guard and any(n in guard for n in range(number, number + len(new)))):
+            raise Fault(RANGE)
+        values[number : number + len(new)] = new
+
+    def put_span_dint(values, number, new, high, guard):
+        words = []
+        for value in new:
+            pair_of = split(value)
+            words += (pair_of[first], pair_of[1 - first])
+        put_span(values, number, words, high, guard)
+
+    def put_span_real(values, number, new, high, guard):
+        words = []
+        for value in new:
+            pair_of = words_from_real(value)
+            words += (pair_of[first], pair_of[1 - first])
+        put_span(values, number, words, high, guard)
+
+    def put_span_bits(values, number, width, new):
+        if not 0 <= number <= len(values) - width * len(new):
+            raise Fault(RANGE)
+        for i, value in enumerate(new):
+            values[number + width * i : number + width * (i + 1)] = bits_of(value, width)
+
+    def reset_span(area, number, new, high):
+        put_span(lists[f"{area}B"], number, new, high, ())
+        for part in (area, "DUE", "REST") if area == "T" else (area,):
+            lists[part][number : number + len(new)] = [0] * len(new)
+
+    def wrapped16(values):
+        return [signed16(value) for value in values]
+
+    def wrapped32(values):
+        return [((value + 0x8000_0000) & 0xFFFF_FFFF) - 0x8000_0000 for value in values]
+
+    local = dict(locals())
+    for name in ("memory", "model", "lists", "first"):
+        del local[name]
+    return local | {
+        "Fault": Fault,
+        "real_from_words": real_from_words,
+        "words_from_real": words_from_real,
+        "split": split,
+        "READ_ONLY_BITS": model.read_only_relays,
+        "READ_ONLY_WORDS": model.read_only_registers,
+        "counted": counted,
+    }

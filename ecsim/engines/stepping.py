@@ -1,0 +1,455 @@
+"""The stepping engine: the same program one instruction at a time, recorded where that is wanted.
+
+Each instruction is a small function of the flow; where the program can go another way (MC, STL, FOR, CJ, CALL, an end)
+a block of them ends in a control, which tells the next block. The walk can be stopped after any instruction.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+
+from ..assembler.program import Instruction, Network, Program, Region, Unit
+from ..devices import Bits, Device, Operand, number_text
+from ..memory import Memory
+from ..values import BOOL, INT
+from .trace import Trace, Write
+from .writer import Writer, indented
+
+DONE, HALT = -1, -2
+
+
+@dataclass(slots=True)
+class Op:
+    """One instruction that always goes on to the next: `run(flow)` gives the flow after it."""
+
+    position: int
+    run: Callable
+    join: str = ""  # contacts: how `closed()` meets the flow
+    nested: bool = False
+    closed: Callable | None = None
+    targets: tuple = ()
+
+
+@dataclass(slots=True)
+class Stage:
+    """A run of instructions and the control behind them."""
+
+    ops: list[Op] = field(default_factory=list)
+    runs: list[Callable] = field(default_factory=list)
+    control: Callable | None = None
+    position: int = -1  # of the control's instruction, -1 when it has none
+
+
+class SteppingEngine:
+    """Runs a program instruction by instruction; `trace` holds the last recorded scan."""
+
+    def __init__(self, program: Program, memory: Memory, services: dict[str, object]):
+        self.program, self.memory, self.services = program, memory, services
+        self.length = len(program.instructions)
+        self.trace = Trace.blank(self.length)
+        self.recording = False
+        self.bind()
+
+    def bind(self) -> None:
+        """Tie the code to the memory's present lists."""
+        self.generation = self.memory.generation
+        self.stack: list = []
+        self.kept: list = []
+        self.returns: list[Callable] = []
+        self.stages: list[Stage] = []
+        self.entries: dict[str, int] = {}
+        _Builder(self).build()
+
+    def scan(self) -> bool:
+        """Execute the main program once; true when it stopped the PLC."""
+        return self.run(self.program.main.name)
+
+    def run(self, unit: str) -> bool:
+        """Execute a unit once, recorded when `recording` is set."""
+        if self.recording:
+            if unit.upper() == self.program.main.name.upper():
+                self.trace = Trace.blank(self.length)
+            for _ in self.walk(unit):
+                pass
+            return self.halted
+        return self._bare(self.entries[unit.upper()])
+
+    def _bare(self, place: int) -> bool:
+        del self.stack[:], self.kept[:], self.returns[:]
+        stages = self.stages
+        flow = True
+        while place >= 0:
+            stage = stages[place]
+            for run in stage.runs:
+                flow = run(flow)
+            place = stage.control(flow)
+        return place == HALT
+
+    def walk(self, unit: str) -> Iterator[int]:
+        """Execute a unit, yielding the position of each instruction after it was executed; `halted` tells how it ended."""
+        del self.stack[:], self.kept[:], self.returns[:]
+        self.halted = False
+        place = self.entries[unit.upper()]
+        flows, states = self.trace.flow, self.trace.closed
+        flow = True
+        while place >= 0:
+            stage = self.stages[place]
+            for op in stage.ops:
+                if op.closed is not None:
+                    closed = bool(op.closed())
+                    states[op.position] = closed
+                    if op.join == "LD":
+                        if op.nested:
+                            self.stack.append(flow)
+                        flow = closed
+                    else:
+                        flow = (flow and closed) if op.join == "AND" else (flow or closed)
+                elif op.targets:
+                    before = self._values(op.targets)
+                    flow = op.run(flow)
+                    self._note(op, before)
+                else:
+                    flow = op.run(flow)
+                flows[op.position] = bool(flow)
+                yield op.position
+            if stage.position >= 0:
+                flows[stage.position] = bool(flow)
+                yield stage.position
+            place = stage.control(flow)
+        self.halted = place == HALT
+
+    def _values(self, targets) -> list[tuple[str, str, int, int]]:
+        """The present values of what an instruction may write, as (list, area, number, value)."""
+        lists = self.memory.lists
+        found = []
+        for name, area, number, index, count in targets:
+            if index is not None:
+                number += lists[index[0]][index[1]]
+            length = count if isinstance(count, int) else count()
+            found += [(name, area, n, lists[name][n]) for n in range(number, number + length) if 0 <= n < len(lists[name])]
+        return found
+
+    def _note(self, op: Op, before) -> None:
+        lists = self.memory.lists
+        for name, area, number, old in before:
+            new = lists[name][number]
+            if new != old:
+                suffix = ":BOOL" if name in ("TB", "CB") else ""
+                self.trace.writes.append(Write(op.position, f"{area}{number_text(area, number)}{suffix}", int(old), int(new)))
+
+
+class _Builder(Writer):
+    """Writes the functions of one program and ties them into stages; the verbs of `Writer` for this engine."""
+
+    def __init__(self, engine: SteppingEngine):
+        super().__init__(engine.program)
+        self.engine = engine
+        self.text: list[str] = []
+        self.wanted: list[Callable[[dict], None]] = []  # what to do once the functions exist
+        self.turns: list = [None]  # the count of the loop whose FOR was written last
+        self.names = 0
+        self.open = False
+
+    def build(self) -> None:
+        engine = self.engine
+        for unit in self.program.units:
+            engine.entries[unit.name.upper()] = -1
+        for unit in self.program.units:
+            self._unit(unit)
+        lists = self.engine.memory.lists
+        namespace = {**engine.services, **self.globals, **lists, "STACK": engine.stack, "KEPT": engine.kept}
+        exec(compile("\n".join(self.text), f"<ecsim {self.model.name} stepping>", "exec"), namespace)  # numbers and names of ours only
+        for give in self.wanted:
+            give(namespace)
+        for stage in engine.stages:
+            stage.runs = [op.run for op in stage.ops]
+
+    # -- stages -------------------------------------------------------------------------------------------------
+
+    def _unit(self, unit: Unit) -> None:
+        self.unit = unit
+        self.labels: dict[int, int] = {}
+        self._stage()
+        self.engine.entries[unit.name.upper()] = len(self.engine.stages) - 1
+        self._nodes(unit.nodes)
+        self.stage.control = self._return
+
+    def _return(self, flow) -> int:
+        """The end of a unit: back to the caller, or the end of the scan."""
+        return self.engine.returns.pop()(None) if self.engine.returns else DONE
+
+    def _stage(self) -> int:
+        self.stage = Stage()
+        self.engine.stages.append(self.stage)
+        return len(self.engine.stages) - 1
+
+    def _control(self, control: Callable | None, position: int = -1) -> int:
+        """End the stage with a control; the new stage's number."""
+        stage = self.stage
+        number = self._stage()
+        stage.control = control or (lambda flow: number)
+        stage.position = position
+        return number
+
+    def _nodes(self, nodes: list) -> None:
+        for node in nodes:
+            if isinstance(node, Network):
+                self._rung(node)
+            else:
+                self._region(node)
+
+    def _rung(self, network: Network) -> None:
+        self.open = False
+        instructions = self.unit.instructions[network.start : network.end]
+        if instructions[0].definition.form != "contact" and not instructions[0].definition.bus:
+            self.stage.ops.append(Op(instructions[0].position, lambda _: True))  # an inner bus is ON
+        for instruction in instructions:
+            self.instruction = instruction
+            self._instruction(instruction)
+
+    def _instruction(self, instruction: Instruction) -> None:
+        definition = instruction.definition
+        if definition.form == "contact":
+            self._contact(instruction)
+        elif definition.form == "value":
+            self._when(self.value(instruction))
+        elif definition.form == "command":
+            self._when(self.command(instruction))
+        elif definition.form == "always":
+            self._always(instruction)
+        else:
+            self.done = False
+            definition.function(self, *instruction.operands)
+            if not self.done:
+                self._op(["return flow"])
+
+    def _op(self, lines: list[str]) -> Op:
+        """One more instruction in this stage, as a function of the flow."""
+        op = Op(self.instruction.position, None, targets=self._targets())
+        self._define("flow", lines, lambda function: setattr(op, "run", function))
+        self.stage.ops.append(op)
+        self.done = True
+        return op
+
+    def _define(self, parameters: str, lines: list[str], give: Callable) -> None:
+        name = f"op_{self.names}"
+        self.names += 1
+        self.text += [f"def {name}({parameters}):", *indented(lines)]
+        self.wanted.append(lambda namespace: give(namespace[name]))
+
+    def _when(self, lines: list[str]) -> None:
+        self._op(["if flow:", *indented(lines), "return flow"])
+
+    def _contact(self, instruction: Instruction) -> None:
+        lines, text = super().contact(instruction)
+        join = instruction.definition.join
+        nested = join == "LD" and self.open
+        if join == "LD":
+            body = [*lines, *(["STACK.append(flow)"] if nested else []), f"return {text}"]
+        else:
+            body = [*lines, f"return flow {join.lower()} {text}"] if "(" in text or " " not in text else [*lines, f"return flow {join.lower()} ({text})"]
+        op = self._op(body)
+        op.join, op.nested = join, nested
+        self._define("", [*lines, f"return {text}"], lambda function: setattr(op, "closed", function))
+        self.open = True
+
+    def _always(self, instruction: Instruction) -> None:
+        from .template import template
+
+        pattern = template(instruction.definition.function, "always")
+        if pattern.expression:
+            self._op([f"return {pattern.fill({'flow': 'flow'})}"])
+            return
+        lines, returns = self.always(instruction, "flow", "flow")
+        self._op([*lines, "return flow"])
+
+    def _targets(self) -> tuple:
+        """(list, area, first number, index register, length) of all that the instruction may change."""
+        instruction, found = self.instruction, []
+        definition = instruction.definition
+        if definition.mnemonic == "CALL":
+            return ()
+        for spec, operand in self.targets(instruction):
+            index = None if operand.index is None else (operand.index_area, operand.index)
+            if isinstance(operand, Bits):
+                found.append((operand.area, operand.area, operand.number, index, 4 * operand.digits * (spec.span if isinstance(spec.span, int) else 1)))
+                continue
+            count = self._length(instruction, spec)
+            both = operand.area in ("T", "C") and (spec.kind in ("TIMER", "COUNTER", "DCOUNTER") or definition.resets)
+            if both or spec.type is not BOOL:
+                found.append((operand.area, operand.area, operand.number, index, count))
+            if both or spec.type is BOOL:
+                found.append((self.access.bits(operand.area), operand.area, operand.number, index, count))
+        found += [(*(self.model.flag(flag)[:1] * 2), self.model.flag(flag)[1], None, 1) for flag in definition.flags]
+        if self.in_step and definition.transition_steps and instruction.operands[0].area == "S" and definition.mnemonic != "RST":
+            found += [("S", "S", step.number, None, 1) for step in self.region.steps]
+        return tuple(found)
+
+    def _length(self, instruction: Instruction, spec) -> int | Callable[[], int]:
+        unit = max(1, spec.type.words)
+        if spec.span is None:
+            return unit
+        if isinstance(spec.span, int):
+            return spec.span * unit
+        for other, operand in zip(instruction.definition.operands, instruction.operands, strict=True):
+            if other.name == spec.span:
+                if isinstance(operand, Device) and operand.index is None:
+                    return lambda: max(0, min(self.engine.memory.get(operand, other.type), 8000)) * unit
+                value = self.constant_value(operand)
+                return (value or 0) * unit
+        return unit
+
+    # -- verbs --------------------------------------------------------------------------------------------------
+
+    def assign(self, d: Device) -> None:
+        self._op([*self.access.store(BOOL, d, "flow"), "return flow"])
+
+    def turn(self, d: Device, on: bool) -> None:
+        self._when(self.turn_lines(d, on))
+
+    def transfer(self, target: Device) -> None:
+        self._when(self.transfer_lines(target))
+
+    def combine(self, word: str) -> None:
+        self._op([f"return STACK.pop() {word} flow" if word == "or" else "first = STACK.pop()", *([] if word == "or" else ["return first and flow"])])
+
+    def push(self) -> None:
+        self._op(["KEPT.append(flow)", "return flow"])
+        self.open = True
+
+    def read(self) -> None:
+        self._op(["return KEPT[-1]"])
+
+    def pop(self) -> None:
+        self._op(["return KEPT.pop()"])
+
+    def guard(self) -> None:
+        self.opening, self.done = self.instruction.position, True
+
+    def step(self) -> None:
+        self.opening, self.done = self.instruction.position, True
+
+    def repeat(self, count: Operand) -> None:
+        self.opening, self.done = self.instruction.position, True
+        self.turns: list = [None]
+        turns = self.turns
+        self._define("", [*self.guard_faults([f"return {self.access.load(INT, count)}"], (count,)), "return 0"], lambda function: turns.__setitem__(0, function))
+
+    def close(self) -> None:
+        pass
+
+    def label(self, number: int) -> None:
+        self.labels[number] = self._control(None)
+
+    def jump(self, number: int) -> None:
+        position, unit, labels = self.instruction.position, self.unit, self.labels
+        spend = self.engine.services["spend"]
+        back = next(i.position for i in unit.instructions if i.mnemonic == "LBL" and i.operands[0].value == number)
+        cost = sum(i.steps for i in unit.instructions if back <= i.position <= position)
+
+        def target() -> int:
+            if back <= position:
+                spend(cost)
+            return labels[number]
+
+        self._branch(target)
+
+    def _branch(self, target: Callable[[], int]) -> None:
+        """A control that goes to `target()` while the flow is ON, on to the next instruction otherwise."""
+        stage = self.stage
+        after = self._control(None, self.instruction.position)
+        stage.control = lambda flow: target() if flow else after
+        self.done = True
+
+    def leave(self) -> None:
+        self._branch(lambda: self._return(True))
+
+    def halt(self) -> None:
+        self._branch(lambda: HALT)
+
+    def call(self, name: str, arguments: tuple[Operand, ...]) -> None:
+        callee, engine, stage = self.program.unit(name), self.engine, self.stage
+        after = self._control(None, self.instruction.position)
+        flows: list = []
+        made: dict[str, Callable] = {}
+        enter = [*self.enter_lines(callee, arguments), "return True"]
+        leave = [*self.exit_lines(callee, arguments, self.unit), *([f"if {self.fault_flag}: executed()"] if self.can_fault else [])]
+        self._define("", [*self.guard_faults(enter, arguments), "return False"], lambda function: made.__setitem__("enter", function))
+        self._define("", [*self.guard_faults(leave, arguments), "return"], lambda function: made.__setitem__("leave", function))
+
+        def back(_) -> int:
+            made["leave"]()
+            return after
+
+        def control(flow) -> int:
+            flows.append(flow)
+            if not flow or not made["enter"]():
+                return after
+            engine.returns.append(back)
+            return engine.entries[callee.name.upper()]
+
+        stage.control = control
+        resume = Op(self.instruction.position, lambda _: flows.pop())  # the rung goes on with the flow that called
+        self.stage.ops.append(resume)
+        self.done = True
+
+    # -- regions ------------------------------------------------------------------------------------------------
+
+    def _region(self, region: Region) -> None:
+        opening, position = self.stage, self.unit.instructions[region.opening].position
+        made: dict[str, Callable] = {}
+        body = self._control(None, position)
+        outer, self.region = self.region, region
+        turns = self.turns
+        self._nodes(region.nodes)
+        self.region = outer
+        closing = self.stage
+        after = self._control(None)
+        lists = self.engine.memory.lists
+        if region.kind == "FOR":
+            opening.control, closing.control = self._loop(region, turns, body, after)
+            return
+        clear = self.clear_lines(self.unit, region)
+        self._define("", clear or ["pass"], lambda function: made.__setitem__("clear", function))
+        if region.kind == "MC":
+
+            def guard(flow) -> int:
+                if flow:
+                    return body
+                made["clear"]()
+                return after
+
+            opening.control = guard
+            return
+        steps, slot = [step.number for step in region.steps], region.slot
+
+        def enter(flow) -> int:
+            active = all(lists["S"][number] for number in steps)
+            was, lists["E"][slot] = lists["E"][slot], active
+            if active:
+                return body
+            if was:
+                made["clear"]()
+            return after
+
+        opening.control = enter
+
+    def _loop(self, region: Region, turns: list, body: int, after: int):
+        left = [0]
+        spend = self.engine.services["spend"]
+        cost = sum(i.steps for i in self.unit.instructions[region.opening + 1 : region.closing])
+
+        def begin(flow) -> int:
+            left[0] = turns[0]() if flow else 0
+            if left[0] <= 0:
+                return after
+            spend(cost)
+            return body
+
+        def again(flow) -> int:
+            left[0] -= 1
+            if left[0] <= 0:
+                return after
+            spend(cost)
+            return body
+
+        return begin, again

@@ -1,0 +1,26 @@
+"""What the stepping engine saw in one scan."""
+
+from dataclasses import dataclass, field
+
+
+@dataclass(slots=True)
+class Write:
+    """One change of a device: by the instruction at `position`, `device` in canonical text."""
+
+    position: int
+    device: str
+    old: int
+    new: int
+
+
+@dataclass(slots=True)
+class Trace:
+    """One scan: by position of an instruction the flow after it and a contact's own state, None where it was not executed."""
+
+    flow: list[bool | None]
+    closed: list[bool | None]
+    writes: list[Write] = field(default_factory=list)
+
+    @classmethod
+    def blank(cls, length: int) -> "Trace":
+        return cls([None] * length, [None] * length)

@@ -1,0 +1,323 @@
+"""What both engines write for one instruction; how instructions follow one another is each engine's own.
+
+An `emitted` instruction of TABLE speaks to its writer in these verbs:
+
+    assign(d)  turn(d, on)  transfer(step)          coils and steps
+    combine("and"|"or")  push()  read()  pop()      blocks and branches of a rung
+    guard()  step()  repeat(count)  close()         structures: MC, STL, FOR and their ends
+    label(n)  jump(n)  leave()  halt()  call(name, arguments)
+"""
+
+import re
+from collections.abc import Iterator
+
+from ..assembler.program import Instruction, Network, Program, Region, Unit, Variable
+from ..devices import Bits, Constant, Device, Operand
+from ..errors import EcsimError
+from ..instructions.signature import OperandSpec
+from ..values import BOOL, REAL
+from .access import Access
+from .template import Template, template
+
+INDENT = "    "
+
+
+def indented(lines: list[str]) -> list[str]:
+    """The lines one level deeper."""
+    return [INDENT + line for line in lines]
+
+
+def regions(nodes: list[Network | Region]) -> Iterator[Region]:
+    """Every region below some nodes, outer ones first."""
+    for node in nodes:
+        if isinstance(node, Region):
+            yield node
+            yield from regions(node.nodes)
+
+
+class Writer:
+    """Source for single instructions of one program."""
+
+    def __init__(self, program: Program):
+        self.program, self.model = program, program.model
+        self.access = Access(self.model)
+        self.globals: dict[str, object] = {}
+        self.can_fault = any(self._may_fault(i) for i in program.instructions)
+        self.fault_flag = "{}[{}]".format(*self.model.flag("fault"))
+        self.unit: Unit = program.main
+        self.region: Region | None = None
+        self.instruction: Instruction | None = None
+
+    # -- what can go wrong --------------------------------------------------------------------------------------
+
+    def _may_fault(self, instruction: Instruction) -> bool:
+        definition = instruction.definition
+        if any(self.access.can_fault(operand) for operand in instruction.operands):
+            return True
+        if definition.form == "command":
+            return bool(definition.faults)
+        if definition.form != "value":
+            return False
+        return template(definition.function, "value").text is None or any(spec.span for spec in definition.operands)
+
+    def guarded(self, instruction: Instruction, lines: list[str]) -> list[str]:
+        """The lines of an application instruction with what an execution error does, and what a correct execution does."""
+        application = instruction.definition.application
+        if self.can_fault and application:
+            lines = [*lines, f"if {self.fault_flag}: executed()"]
+        if self._may_fault(instruction):
+            lines = ["try:", *indented(lines), "except Fault as error:", f"{INDENT}fault(error.code)"]
+        return lines
+
+    # -- operands -----------------------------------------------------------------------------------------------
+
+    @staticmethod
+    def _simple(text: str) -> bool:
+        return text.count("[") <= 1 and " " not in text
+
+    def _loads(self, instruction: Instruction, names: list[str], pattern: Template) -> tuple[list[str], dict[str, str]]:
+        """Statements that fetch what stands more than once, and the fields of the operands that are read."""
+        lines, fields = [], {}
+        specs = [(spec, operand) for spec, operand in zip(instruction.definition.operands, instruction.operands, strict=True) if spec.read]
+        for name, (spec, operand) in zip(names, specs, strict=True):
+            text = self._load(instruction, spec, operand)
+            if pattern.uses.get(name, 1) > 1 and not self._simple(text):
+                lines.append(f"a_{name} = {text}")
+                text = f"a_{name}"
+            fields[name] = text
+        return lines, fields
+
+    def _load(self, instruction: Instruction, spec: OperandSpec, operand: Operand) -> str:
+        if spec.span is None:
+            return self.access.load(spec.type, operand)
+        return self.access.load_span(spec.type, operand, self._count(instruction, spec))
+
+    def _count(self, instruction: Instruction, spec: OperandSpec) -> str:
+        """The length of a span: a number, or the value of another operand."""
+        if isinstance(spec.span, int):
+            return str(spec.span)
+        for other, operand in zip(instruction.definition.operands, instruction.operands, strict=True):
+            if other.name == spec.span:
+                return self.access.load(other.type, operand)
+        raise EcsimError(f"{instruction.mnemonic}: the span of {spec.name} names no operand")
+
+    def _function(self, instruction: Instruction) -> str:
+        function = instruction.definition.function
+        name = f"{function.__module__.rpartition('.')[2]}_{function.__name__}"
+        self.globals[name] = function
+        return name
+
+    @staticmethod
+    def _parameters(instruction: Instruction) -> list[str]:
+        code = instruction.definition.function.__code__
+        return list(code.co_varnames[: code.co_argcount])
+
+    # -- contacts -----------------------------------------------------------------------------------------------
+
+    def contact(self, instruction: Instruction) -> tuple[list[str], str]:
+        """Statements to run first, and the expression that is true while the contact is closed."""
+        pattern = template(instruction.definition.function, "contact")
+        lines, fields = self._loads(instruction, self._parameters(instruction), pattern)
+        self.globals.update(pattern.globals)
+        text = pattern.fill(fields)
+        if not (self.can_fault and instruction.definition.application):
+            return lines, text
+        name = f"c{instruction.position}"
+        body = [*lines, f"{name} = {text}", f"if {self.fault_flag}: executed()"]
+        if self._may_fault(instruction):
+            body = ["try:", *indented(body), "except Fault as error:", f"{INDENT}{name} = fault(error.code)"]
+        return body, name
+
+    # -- values -------------------------------------------------------------------------------------------------
+
+    def value(self, instruction: Instruction) -> list[str]:
+        """The statements of a value instruction whose flow is ON."""
+        definition = instruction.definition
+        pattern = template(definition.function, "value")
+        names = self._parameters(instruction)
+        lines, fields = self._loads(instruction, names, pattern)
+        if pattern.text is None:
+            result = f"{self._function(instruction)}({', '.join(fields[name] for name in names)})"
+        else:
+            self.globals.update(pattern.globals)
+            result = pattern.fill(fields)
+        targets = [(spec, operand) for spec, operand in zip(definition.operands, instruction.operands, strict=True) if spec.written]
+        if len(targets) == 1 and not definition.given:
+            lines += self._one_result(instruction, *targets[0], result, pattern)
+        else:
+            names = [f"v{place}" for place in range(len(targets))] + [f"f_{flag}" for flag in definition.given]
+            lines.append(f"{', '.join(names)}{',' if len(names) == 1 else ''} = {result}")
+            for place, (spec, operand) in enumerate(targets):
+                lines += self._store_result(instruction, spec, operand, f"v{place}")
+            lines += ["{}[{}] = {}".format(*self.model.flag(flag), f"f_{flag}") for flag in definition.given]
+        return self.guarded(instruction, lines)
+
+    def _one_result(self, instruction: Instruction, spec: OperandSpec, operand, result: str, pattern: Template) -> list[str]:
+        if pattern.passes and spec.span is None and self._same_width(instruction, spec) and not instruction.definition.flags:
+            return self.access.store(spec.type, operand, result)
+        return [f"v = {result}", *self._store_result(instruction, spec, operand, "v")]
+
+    @staticmethod
+    def _same_width(instruction: Instruction, spec: OperandSpec) -> bool:
+        source = instruction.definition.operands[0]
+        return source.type is spec.type and spec.type.signed
+
+    def _store_result(self, instruction: Instruction, spec: OperandSpec, operand, name: str) -> list[str]:
+        kind = spec.type
+        if spec.span is not None:
+            if kind.words and kind is not REAL:
+                name = f"wrapped{kind.bits}({name})"
+            return self.access.store_span(kind, operand, name, instruction.definition.resets)
+        if kind is BOOL:
+            return self.access.store(kind, operand, name)
+        lines = self._flags(instruction, kind, name)
+        if kind is not REAL:
+            half, full = 1 << kind.bits - 1, (1 << kind.bits) - 1
+            if lines and lines[-1].startswith(INDENT):  # the flags have found the result to be too large already
+                lines.append(f"{INDENT}{name} = ({name} + {half} & {full}) - {half}")
+            else:
+                lines.append(f"if not {-half} <= {name} <= {half - 1}: {name} = ({name} + {half} & {full}) - {half}")
+        return lines + self.access.store(kind, operand, name)
+
+    def _flags(self, instruction: Instruction, kind, name: str) -> list[str]:
+        """What the exact result tells: zero, above the range (carry), below it (borrow)."""
+        flags = [flag for flag in instruction.definition.flags if flag not in instruction.definition.given]
+        relay = {flag: "{}[{}]".format(*self.model.flag(flag)) for flag in flags}
+        lines = [f"{relay['zero']} = {name} == 0"] if "zero" in relay else []
+        out = [(relay[flag], test) for flag, test in (("carry", f"{name} > {kind.high}"), ("borrow", f"{name} < {kind.low}")) if flag in relay]
+        if out and kind is not REAL:
+            lines += [f"if {kind.low} <= {name} <= {kind.high}:", INDENT + " = ".join(target for target, _ in out) + " = False", "else:"]
+            lines += [f"{INDENT}{target} = {test}" for target, test in out]
+        elif out:
+            lines += [f"{target} = {name} in (float('inf'), float('-inf'))" if test.endswith(str(kind.high)) else f"{target} = False" for target, test in out]
+        return lines
+
+    # -- always and command ---------------------------------------------------------------------------------------
+
+    def always_fields(self, instruction: Instruction) -> dict[str, str]:
+        """The fields of an always instruction but for the flow."""
+        fields: dict[str, str] = {}
+        names = self._parameters(instruction)[1:]
+        operands = iter(zip(instruction.definition.operands, instruction.operands, strict=True))
+        for name in names:
+            if name == "state":
+                fields["state_was"] = f"E[{instruction.slot}]"
+                continue
+            spec, operand = next(operands)
+            fields |= self._unit_fields(name, spec, operand) if spec.kind in ("TIMER", "COUNTER", "DCOUNTER") else {name: self.access.load(spec.type, operand)}
+        return fields
+
+    def _unit_fields(self, name: str, spec: OperandSpec, device: Device) -> dict[str, str]:
+        number = device.number
+        fields = {f"{name}_number": str(number), f"{name}_value": f"{device.area}[{number}]", f"{name}_contact": f"{device.area}B[{number}]"}
+        if spec.kind == "TIMER":
+            fields |= {f"{name}_due": f"DUE[{number}]", f"{name}_rest": f"REST[{number}]", f"{name}_now": "CLOCK[0]"}
+            fields[f"{name}_base"] = str(self.model.timer_base_us(number))
+        else:
+            fields[f"{name}_down"] = f"{self.model.special_bits}[{self.model.relays['counter direction'] + number}]"
+        return fields
+
+    def always(self, instruction: Instruction, flow: str, result: str) -> tuple[list[str], bool]:
+        """The statements of an always instruction that do not give a flow by an expression alone; whether they assign the flow `result`."""
+        pattern = template(instruction.definition.function, "always")
+        self.globals.update(pattern.globals)
+        fields = self.always_fields(instruction)
+        lines = []
+        for name in [n for n in fields if pattern.uses.get(n, 0) > 1 and not self._simple(fields[n])]:
+            lines.append(f"a_{name} = {fields[name]}")
+            fields[name] = f"a_{name}"
+        fields["flow"] = flow
+        body = pattern.fill(fields)
+        if pattern.returns:
+            head, _, tail = body.rpartition("\n")
+            body = f"{head}\n{result} = {tail.partition(' = ')[2]}"
+        text = body.split("\n")
+        if not self._fast(instruction):
+            text = [re.sub(r"\bwatch\(.*", "pass", line) for line in text]
+        if self._may_fault(instruction):
+            text = ["try:", *indented(lines + text), "except Fault as error:", f"{INDENT}fault(error.code)"]
+            lines = []
+        return lines + text, pattern.returns
+
+    def _fast(self, instruction: Instruction) -> bool:
+        first, last = self.model.fast_timers
+        return any(isinstance(o, Device) and o.area == "T" and first <= o.number <= last for o in instruction.operands[:1])
+
+    def command(self, instruction: Instruction) -> list[str]:
+        """The statements of a command whose flow is ON."""
+        arguments = ["machine", *(self._load(instruction, spec, operand) for spec, operand in zip(instruction.definition.operands, instruction.operands, strict=True))]
+        return self.guarded(instruction, [f"{self._function(instruction)}({', '.join(arguments)})"])
+
+    # -- coils, steps, calls --------------------------------------------------------------------------------------
+
+    @property
+    def in_step(self) -> bool:
+        return self.region is not None and self.region.kind == "STL"
+
+    def turn_lines(self, d: Device, on: bool) -> list[str]:
+        """A bit set or reset."""
+        return self.access.store(BOOL, d, "True") if on else self.access.reset(d)
+
+    def transfer_lines(self, target: Device) -> list[str]:
+        """A step handed over: the steps that the transition stands in end, the target begins (5.3.2)."""
+        return [*(f"S[{step.number}] = False" for step in self.region.steps), f"S[{target.number}] = True"]
+
+    def clear_lines(self, unit: Unit, region: Region) -> list[str]:
+        """What is cleared when a region is left: the destinations of OUT, TON, TOF ... inside (5.2.1, 5.3.1)."""
+        lines: list[str] = []
+        for instruction in unit.instructions[region.opening + 1 : region.closing]:
+            definition = instruction.definition
+            if not definition.cleared:
+                continue
+            if region.kind == "STL" and definition.transition_steps and instruction.operands[0].area == "S":
+                continue
+            for spec, operand in zip(definition.operands, instruction.operands, strict=True):
+                if spec.written:
+                    lines += self.access.reset(operand) if definition.form == "always" else self.access.store(BOOL, operand, "False")
+        return list(dict.fromkeys(lines))
+
+    def enter_lines(self, callee: Unit, arguments: tuple[Operand, ...]) -> list[str]:
+        """A call's beginning: the caller's LM and V put aside, the callee's cleared and loaded (3.1.12, 4.4.3)."""
+        loads, stores = [], []
+        for place, (variable, operand) in enumerate(zip(callee.parameters, arguments, strict=True)):
+            if variable.role != "OUTPUT":
+                loads.append(f"p{place} = {self.access.load(variable.type, operand)}")
+                text = f"p{place}" if variable.type in (BOOL, REAL) else f"wrapped{variable.type.bits}([p{place}])[0]"
+                stores += self.access.store(variable.type, variable.device, text)
+        return [*loads, "FRAMES.append((LM[:], V[:]))", *self._blank_locals(), *stores]
+
+    def _blank_locals(self) -> list[str]:
+        return [f"{area}[:] = [0] * {self.model.areas[area].count}" for area in ("LM", "V")]
+
+    def exit_lines(self, callee: Unit, arguments: tuple[Operand, ...], caller: Unit) -> list[str]:
+        """A call's end: results fetched, the caller's LM and V put back (cleared in the main program, 3.1.12), results stored."""
+        lines, stores = [], []
+        for place, (variable, operand) in enumerate(zip(callee.parameters, arguments, strict=True)):
+            if variable.role in ("OUTPUT", "IN_OUT"):
+                lines.append(f"p{place} = {self.access.load(self._signed(variable), variable.device)}")
+                stores += self.access.store(variable.type, operand, f"p{place}")
+        lines.append("LM[:], V[:] = FRAMES.pop()")
+        if caller.kind == "MAIN":
+            lines += self._blank_locals()
+        return lines + stores
+
+    @staticmethod
+    def _signed(variable: Variable):
+        from ..values import DINT, INT
+
+        return variable.type if variable.type in (BOOL, REAL) else INT if variable.type.words == 1 else DINT
+
+    def guard_faults(self, lines: list[str], operands: tuple[Operand, ...]) -> list[str]:
+        """Lines with their execution errors caught, if their operands can make any."""
+        if any(self.access.can_fault(operand) for operand in operands):
+            return ["try:", *indented(lines), "except Fault as error:", f"{INDENT}fault(error.code)"]
+        return lines
+
+    @staticmethod
+    def constant_value(operand: Operand) -> int | None:
+        return operand.value if isinstance(operand, Constant) else None
+
+    @staticmethod
+    def targets(instruction: Instruction) -> list[tuple[OperandSpec, Device | Bits]]:
+        """The operands that an instruction writes."""
+        return [(spec, operand) for spec, operand in zip(instruction.definition.operands, instruction.operands, strict=True) if spec.written and isinstance(operand, (Device, Bits))]

@@ -1,0 +1,1 @@
+"""What works beside the program: each unit moves with simulated time."""

@@ -1,0 +1,34 @@
+"""The clock relays SM10 to SM14 and SM15 (appendix 1, section 2)."""
+
+from ..memory import Memory
+
+# Meaning of the relay and half its period in units of 5 ms.
+_CLOCKS = (("clock 10 ms", 1), ("clock 100 ms", 10), ("clock 1 s", 100), ("clock 1 min", 6_000), ("clock 1 h", 360_000))
+UNIT_US = 5_000
+
+
+class Clocks:
+    """Square waves counted from the begin of RUN; their first half period is OFF."""
+
+    def __init__(self, memory: Memory):
+        self.memory = memory
+        model = memory.model
+        self.area = model.special_bits
+        self.rows = [(model.relays[meaning], half) for meaning, half in _CLOCKS]
+        self.toggle = model.relays["scan toggle"]
+        self.began = 0
+        self.due = 0
+
+    def restart(self, now: int) -> None:
+        """RUN begins."""
+        self.began = self.due = now
+
+    def refresh(self, now: int, first: bool) -> None:
+        """Set the relays for the scan that begins."""
+        relays = self.memory.lists[self.area]
+        relays[self.toggle] = not first and not relays[self.toggle]
+        if now >= self.due:
+            units = (now - self.began) // UNIT_US
+            for number, half in self.rows:
+                relays[number] = units // half & 1 == 1
+            self.due = self.began + (units + 1) * UNIT_US

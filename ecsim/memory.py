@@ -1,0 +1,219 @@
+"""The devices of one PLC: plain lists of bits and 16-bit numbers, and every rule about reaching them.
+
+Layout: one list an area under the area's name (X, D ...), bits as True and False (CPython tests these two fastest),
+registers as signed 16-bit numbers. T and C hold current values, TB and CB contacts. DUE and REST belong to the timers (us), E to instructions that remember a scan before.
+The lists keep their identity for as long as nothing is forced, so that generated code may hold them.
+"""
+
+from collections.abc import Container
+
+from .devices import Bits, Constant, Device
+from .errors import EcsimError
+from .models import Area, Model
+from .values import BOOL, DINT, INT, REAL, TYPES, DataType, join, real_from_words, signed16, split, words_from_real, wrap
+
+_WORDS = Area("", 0, "word")
+MAX_FORCED_BITS, MAX_FORCED_WORDS = 128, 16
+
+
+class Forced(list):
+    """An area with forced devices: a write to one of them is noted but changes nothing."""
+
+    def __init__(self, values):
+        super().__init__(values)
+        self.forced: dict[int, int] = {}
+        self.written: dict[int, int] = {}
+
+    def __setitem__(self, key, value):
+        if isinstance(key, slice):
+            value = list(value)
+            for offset, number in enumerate(range(*key.indices(len(self)))):
+                if number in self.forced:
+                    self.written[number] = value[offset]
+                    value[offset] = self.forced[number]
+        elif key in self.forced:
+            self.written[key] = value
+            return
+        super().__setitem__(key, value)
+
+
+class Memory:
+    """All devices of one PLC."""
+
+    def __init__(self, model: Model):
+        self.model = model
+        self.lists: dict[str, list] = {}
+        for area in model.areas.values():
+            self.lists[area.name] = [False if area.kind == "bit" else 0] * area.count
+            if area.kind in ("timer", "counter"):
+                self.lists[f"{area.name}B"] = [False] * area.count
+        timers = model.areas["T"].count
+        self.lists["DUE"] = [0] * timers
+        self.lists["REST"] = [0] * timers
+        self.lists["E"] = []
+        self.generation = 0  # counts the replacements of lists, for those who hold them
+
+    def slots(self, count: int) -> None:
+        """Make room for what `count` instructions remember, and forget what there was."""
+        self.lists["E"][:] = [False] * count
+
+    # -- reading and writing by name ------------------------------------------------------------------------------
+
+    def parse(self, name: str, names: dict[str, Device] | None = None) -> tuple[Device | Bits, DataType]:
+        """The device and type that a name like "D0", "D0:REAL", "T0:BOOL", "K4M0" or a symbol stands for; raises EcsimError."""
+        text, _, suffix = str(name).partition(":")
+        text = text.strip()
+        device = (names or {}).get(text.casefold())
+        if device is None:
+            try:
+                device = self.model.syntax.parse(text)
+            except ValueError as error:
+                raise EcsimError(str(error)) from None
+        if device is None or isinstance(device, Constant):
+            raise EcsimError(f"{text!r} is no device of {self.model.name}; write X0, D100, T5 or a name that the program declares")
+        if getattr(device, "index", None) is not None:
+            raise EcsimError(f"{text!r} is indexed; name the device itself")
+        area = self.model.areas[device.area]
+        kind = TYPES.get(suffix.strip().upper()) if suffix else self._usual_type(device)
+        if kind is None:
+            raise EcsimError(f"{suffix!r} is no type; use {', '.join(TYPES)}")
+        length = 4 * device.digits if isinstance(device, Bits) else kind.words if area.kind == "word" else 1
+        if device.number + max(1, length) > area.count:
+            raise EcsimError(f"{self.model.name} has no {text} ({area.span})")
+        if isinstance(device, Device) and (area.kind == "bit") != (kind is BOOL) and area.kind in ("bit", "word"):
+            raise EcsimError(f"{text} is {'one bit' if area.kind == 'bit' else 'a register'}, {kind.name} is not to be had from it")
+        return device, kind
+
+    def _usual_type(self, device: Device | Bits) -> DataType:
+        if isinstance(device, Bits):
+            return INT if device.digits <= 4 else DINT
+        kind = self.model.areas[device.area].kind
+        return BOOL if kind == "bit" else DINT if kind == "counter" and device.number >= self.model.wide_counters else INT
+
+    def get(self, device: Device | Bits, kind: DataType) -> int | float:
+        """The value of a device read as `kind`; bits as 0 or 1."""
+        if isinstance(device, Bits):
+            bits = self.lists[device.area][device.number : device.number + 4 * device.digits]
+            value = sum(1 << place for place, bit in enumerate(bits) if bit)
+            return wrap(value, kind) if kind.bits == len(bits) else value
+        area = self.model.areas[device.area]
+        if kind is BOOL:
+            return int(self.bits(device.area)[device.number])
+        values = self.lists[device.area]
+        if area.kind in ("timer", "counter"):
+            return values[device.number] if kind.signed else values[device.number] & kind.high
+        if kind.words == 1:
+            return values[device.number] if kind.signed else values[device.number] & 0xFFFF
+        high, low = self._pair(values[device.number], values[device.number + 1])
+        if kind is REAL:
+            return real_from_words(high, low)
+        return join(high, low) if kind.signed else join(high, low) & 0xFFFF_FFFF
+
+    def set(self, device: Device | Bits, kind: DataType, value: int | float | bool) -> None:
+        """Write a device as `kind`; raises EcsimError for a value that does not fit."""
+        value = self._fitting(device, kind, value)
+        if isinstance(device, Bits):
+            width = 4 * device.digits
+            self.lists[device.area][device.number : device.number + width] = [bool(value >> place & 1) for place in range(width)]
+        elif kind is BOOL:
+            self.bits(device.area)[device.number] = bool(value)
+        elif self.model.areas[device.area].kind == "word" and kind.words == 2:
+            words = words_from_real(value) if kind is REAL else split(value)
+            self.lists[device.area][device.number : device.number + 2] = self._pair(*words)
+        else:
+            wide = device.area == "C" and device.number >= self.model.wide_counters
+            self.lists[device.area][device.number] = wrap(value, DINT) if wide else signed16(value)
+
+    def _fitting(self, device: Device | Bits, kind: DataType, value):
+        if kind is REAL:
+            if isinstance(value, (int, float)):
+                return float(value)
+            raise EcsimError(f"{device} takes a number, not {value!r}")
+        if isinstance(value, bool) or kind is BOOL:
+            if value in (0, 1):
+                return int(value)
+            raise EcsimError(f"{device} is one bit: 0 or 1, not {value!r}")
+        if not isinstance(value, int):
+            try:
+                value = value.__index__()
+            except AttributeError:
+                raise EcsimError(f"{device} takes a whole number, not {value!r}; for REAL write {device}:REAL") from None
+        low = -(1 << kind.bits - 1)
+        high = (1 << kind.bits) - 1
+        if not low <= value <= high:
+            raise EcsimError(f"{value} does not fit into {device} ({kind.name}: {kind.low} to {kind.high})")
+        return value
+
+    def _pair(self, first: int, second: int) -> tuple[int, int]:
+        """(high, low) from two registers in order of their numbers, and back."""
+        return (first, second) if self.model.high_word_first else (second, first)
+
+    def bits(self, area: str) -> list:
+        """The list of an area's bits; of T and C the contacts."""
+        return self.lists[f"{area}B"] if area in ("T", "C") else self.lists[area]
+
+    # -- forcing ------------------------------------------------------------------------------------------------
+
+    def force(self, device: Device, value: int) -> None:
+        """Hold a bit or register at a value until it is released; at most 128 bits and 16 words (2.2)."""
+        is_bit = self.model.areas[device.area].kind == "bit"
+        value = bool(value) if is_bit else value
+        name = device.area
+        values = self.lists[name]
+        same = [n for n, v in self.lists.items() if isinstance(v, Forced) and (self.model.areas[n].kind == "bit") == is_bit]
+        count = sum(len(self.lists[n].forced) for n in same)
+        limit = MAX_FORCED_BITS if is_bit else MAX_FORCED_WORDS
+        already = isinstance(values, Forced) and device.number in values.forced
+        if count >= limit and not already:
+            raise EcsimError(f"{limit} {'bits' if is_bit else 'words'} are forced already; release one first")
+        if not isinstance(values, Forced):
+            values = self.lists[name] = Forced(values)
+            self.generation += 1
+        old = values.forced.pop(device.number, None)
+        if old is None:
+            values.written[device.number] = values[device.number]
+        values[device.number] = value
+        values.forced[device.number] = value
+
+    def unforce(self, device: Device) -> None:
+        """Release a forced device; it keeps the value until the program or the input writes it."""
+        values = self.lists[device.area]
+        if not isinstance(values, Forced) or device.number not in values.forced:
+            raise EcsimError(f"{device} is not forced")
+        del values.forced[device.number]
+        values.written.pop(device.number, None)
+        if not values.forced:
+            self.lists[device.area] = list(values)
+            self.generation += 1
+
+    def forced(self) -> dict[str, int]:
+        """Every forced device by name, with its value."""
+        return {
+            str(Device(name, number)): int(value)
+            for name, values in self.lists.items()
+            if isinstance(values, Forced)
+            for number, value in sorted(values.forced.items())
+        }
+
+    # -- whole areas --------------------------------------------------------------------------------------------
+
+    def clear(self, area: str, keep: Container[int] = ()) -> None:
+        """Set an area to 0 but for the numbers to keep; timers and counters with contacts and all."""
+        parts = [area]
+        if area in ("T", "C"):
+            parts.append(f"{area}B")
+        if area == "T":
+            parts += ["DUE", "REST"]
+        for part in parts:
+            values = self.lists[part]
+            off = False if part in ("TB", "CB") or self.model.areas.get(part, _WORDS).kind == "bit" else 0
+            values[:] = [value if number in keep else off for number, value in enumerate(values)] if keep else [off] * len(values)
+
+    def snapshot(self) -> dict[str, list]:
+        """A copy of every list, by name."""
+        return {name: list(values) for name, values in self.lists.items()}
+
+    def restore(self, snapshot: dict[str, list]) -> None:
+        """Put a snapshot back; forced devices stay as they are forced."""
+        for name, values in snapshot.items():
+            self.lists[name][:] = values

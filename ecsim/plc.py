@@ -1,0 +1,491 @@
+"""Plc: one machine with its program, in exact simulated time."""
+
+import copy
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from .assembler import Program, assemble
+from .devices import Bits, Device
+from .engines import CompiledEngine, SteppingEngine, Trace
+from .engines.access import functions
+from .errors import WATCHDOG, EcsimError
+from .hardware.clocks import Clocks
+from .hardware.faults import MEANINGS, STOPPING, Faults
+from .hardware.inputs import Inputs
+from .hardware.interrupts import Interrupts
+from .hardware.timers import Timers
+from .memory import Memory
+from .models import Model, get_model
+from .project import read_project
+from .values import BOOL
+
+
+class Overrun(Exception):
+    """The user program took longer than the watchdog allows."""
+
+
+@dataclass
+class SystemBlock:
+    """What the system block (2.2.1) sets. `retain` maps an area to its retained ranges, [(first, last), ...] as numbers."""
+
+    retain: dict[str, list[tuple[int, int]]] = field(default_factory=dict)
+    hold_values: bool = False
+    data_block: dict[str, int] = field(default_factory=dict)
+    data_block_valid: bool = True
+    stop_outputs: str = "disable"  # disable, freeze or configure
+    stop_output_table: dict[str, int] = field(default_factory=dict)
+    watchdog_ms: int = 200
+    constant_scan_ms: int = 0
+    input_filter_ms: float | None = None
+
+
+@dataclass(frozen=True)
+class MachineError:
+    """One error that the machine reports, in words."""
+
+    code: int
+    meaning: str
+    section: str = "appendix 6"
+
+    def __str__(self) -> str:
+        return f"{self.code}: {self.meaning} (manual {self.section})"
+
+
+class Plc:
+    """A PLC that is powered and in STOP. `scan_ms` is the fixed scan period, None models it from the program's length.
+
+    `input_filter_ms` overrides the model's filter (10 ms EC20, 8 ms EC10); `system` is the whole system block.
+    """
+
+    def __init__(self, model: str | Model = "EC20", scan_ms: float | None = 10, input_filter_ms: float | None = None, system: SystemBlock | None = None):
+        self.model = get_model(model)
+        if scan_ms is not None and not 0.001 <= scan_ms <= 60_000:
+            raise EcsimError(f"scan_ms is {scan_ms!r}; a scan takes from 0.001 to 60000 ms, or None to model it")
+        self.scan_ms = scan_ms
+        self.system = system or SystemBlock()
+        self.memory = Memory(self.model)
+        if input_filter_ms is None:
+            input_filter_ms = self.system.input_filter_ms
+        if input_filter_ms is None:
+            input_filter_ms = self.model.filter_ms
+        self.interrupts = Interrupts(self.memory)
+        self.inputs = Inputs(self.memory, input_filter_ms, self.interrupts.edge)
+        self.clock = [0]
+        self.timers = Timers(self.memory, self.clock)
+        self.clocks = Clocks(self.memory)
+        self.faults = Faults(self.memory)
+        self.running = False
+        self.scans = 0
+        self.system_error = 0
+        self.program: Program | None = None
+        self._engines: dict[type, CompiledEngine | SteppingEngine] = {}
+        self._tracing = False
+        self._asked = 0
+        self._spent_ns = 0
+        self._scan_us = 0
+        self._first = True
+        self._names: dict[str, Device] = {}
+        self._special = self.memory.lists[self.model.special_bits], self.memory.lists[self.model.special_words]
+        self._services = {
+            **functions(self.memory),
+            "CLOCK": self.clock,
+            "FRAMES": [],
+            "LOOPS": [0] * 16,
+            "tick": self.timers.tick,
+            "resume": self.timers.resume,
+            "watch": self.timers.watch,
+            "fault": self.faults.note,
+            "executed": self.faults.executed,
+            "spend": self._spend,
+            "machine": self,
+        }
+        self._init_special(power_up=True)
+        self.load("")
+
+    # -- the program --------------------------------------------------------------------------------------------
+
+    def load(self, program: "str | Path | Program") -> Program:
+        """Download a program: its text, the path of an .il file or project folder, or a Program. A running PLC is stopped first.
+
+        A program that does not compile raises ProgramError and leaves the loaded one as it is, running if it ran.
+        """
+        if not isinstance(program, Program):
+            text, name = read_project(program)
+            program = assemble(text, self.model, name)
+        if program.model.name != self.model.name:
+            raise EcsimError(f"the program was compiled for {program.model.name}, this is an {self.model.name}; compile it for {self.model.name}")
+        compiled = CompiledEngine.__new__(CompiledEngine)
+        slots = self.memory.lists["E"]
+        kept = list(slots)
+        self.memory.slots(program.slots)
+        try:
+            compiled.__init__(program, self.memory, self._services)
+        except BaseException:
+            slots[:] = kept
+            raise
+        if self.running:
+            self.stop()
+        self.program = program
+        self._engines = {CompiledEngine: compiled}
+        self._names = {name.casefold(): variable.device for name, variable in program.variables.items()}
+        self._choose_engine()
+        return program
+
+    @property
+    def tracing(self) -> bool:
+        """Whether scans run on the stepping engine and are recorded in `trace`."""
+        return self._tracing
+
+    @tracing.setter
+    def tracing(self, on: bool) -> None:
+        self._tracing = bool(on)
+        self._choose_engine()
+
+    @property
+    def trace(self) -> Trace | None:
+        """What happened in the last traced scan, None before the first one."""
+        engine = self._engines.get(SteppingEngine)
+        return engine.trace if engine is not None else None
+
+    def _choose_engine(self) -> None:
+        kind = SteppingEngine if self._tracing else CompiledEngine
+        if kind not in self._engines:
+            self._engines[kind] = kind(self.program, self.memory, self._services)
+        self.engine = self._engines[kind]
+        if self._tracing:
+            self.engine.recording = True
+        self._rebind()
+
+    def _rebind(self) -> None:
+        """After a change of what is forced: the code holds the memory's lists."""
+        if self.engine.generation != self.memory.generation:
+            self.engine.bind()
+        self._special = self.memory.lists[self.model.special_bits], self.memory.lists[self.model.special_words]
+
+    # -- RUN, STOP, power ---------------------------------------------------------------------------------------
+
+    def run(self) -> None:
+        """STOP -> RUN with the clearing of 2.1.6: retained devices stay, the data block is loaded, all else is cleared unless values are held."""
+        if self.running:
+            return
+        if self.system_error in STOPPING and self.system_error >= 60:
+            self.system_error = 0
+        self._initialise(hold=self.system.hold_values)
+        self._init_special(power_up=bool(self._special[0][self.model.relays["power up"]]))
+        relays, registers = self._special
+        relays[self.model.relays["running"]] = relays[self.model.relays["first scan"]] = True
+        registers[self.model.registers["least scan time"]] = 0
+        self.memory.slots(self.program.slots)
+        self.clocks.restart(self.clock[0])
+        self.timers.restart()
+        self.interrupts.restart({unit.event: unit.name for unit in self.program.units if unit.event is not None})
+        self.running = self._first = True
+
+    def stop(self) -> None:
+        """RUN -> STOP: values are kept, outputs do what the system block says."""
+        if not self.running:
+            return
+        self.running = False
+        self._special[0][self.model.relays["running"]] = False
+        if self.system.stop_outputs == "freeze":
+            return
+        self.memory.clear("Y")
+        if self.system.stop_outputs == "configure":
+            for name, state in self.system.stop_output_table.items():
+                device, kind = self.memory.parse(name)
+                self.memory.set(device, kind, state)
+
+    def power_cycle(self) -> None:
+        """Power off and on again with the mode switch ON: what is not retained is cleared, then RUN."""
+        self.stop()
+        for device in list(self.forced):
+            self.unforce(device)
+        self._initialise(hold=False)
+        self.inputs.waiting.clear()
+        self.system_error = 0
+        self._init_special(power_up=True)
+        self.run()
+
+    def _initialise(self, hold: bool) -> None:
+        """The order of 2.1.6: retained, data block, held values, cleared."""
+        retained = {
+            area: {n for first, last in ranges for n in range(first, last + 1)} for area, ranges in self.system.retain.items() if area in self.model.retained
+        }
+        if not hold:
+            for area in self.model.areas:
+                if area not in ("X", self.model.special_bits, self.model.special_words):
+                    self.memory.clear(area, retained.get(area, frozenset()))
+        for part in ("DUE", "REST"):
+            values = self.memory.lists[part]
+            values[:] = [0] * len(values)
+        if self.system.data_block_valid:
+            for name, value in self.system.data_block.items():
+                device, kind = self.memory.parse(name)
+                if device.number not in retained.get(device.area, ()):
+                    self.memory.set(device, kind, value)
+
+    def _init_special(self, power_up: bool) -> None:
+        """SM and SD at their initial values but for the pulse counts SD50 to SD55 (appendix 2)."""
+        model = self.model
+        relays, registers = self.memory.lists[model.special_bits], self.memory.lists[model.special_words]
+        pulses = registers[50:56]
+        self.memory.clear(model.special_bits)
+        self.memory.clear(model.special_words)
+        registers[50:56] = pulses
+        numbers = model.registers
+        values = {
+            "type": model.type_code, "version": 100, "capacity": model.limits["steps"] // 1000, "system error": self.system_error,
+            "watchdog": self.system.watchdog_ms, "constant scan": self.system.constant_scan_ms, "input filter": self.inputs.filter_us // 1000,
+        }  # fmt: skip
+        for meaning, value in values.items():
+            registers[numbers[meaning]] = value
+        for number, value in model.initial_registers.items():
+            registers[number] = value
+        relays[model.relays["power up"]] = power_up
+        relays[model.relays["constant scan"]] = self.system.constant_scan_ms > 0
+        relays[model.relays["system error"]] = self.system_error != 0
+
+    # -- time ---------------------------------------------------------------------------------------------------
+
+    def scan(self, count: int = 1) -> None:
+        """`count` whole scans: input refresh, user program, housekeeping, then the time to the next scan goes by.
+
+        In STOP the program rests, inputs and time go on.
+        """
+        for _ in range(count):
+            self._one_scan()
+        self._asked = self.clock[0]
+
+    def advance(self, ms: float) -> None:
+        """Simulated time goes on by `ms` milliseconds: as many scans as begin in it."""
+        self._asked = max(self._asked, self.clock[0] - self.period_us) + round(ms * 1000)
+        while self.clock[0] < self._asked:
+            self._one_scan()
+
+    @property
+    def period_us(self) -> int:
+        """How long the next scan takes."""
+        if self.system.constant_scan_ms:
+            return max(self.system.constant_scan_ms * 1000, self._modelled_us() if self.scan_ms is None else 0)
+        return self._modelled_us() if self.scan_ms is None else round(self.scan_ms * 1000)
+
+    def _modelled_us(self) -> int:
+        return max(1000, -(-self._spent_ns // 1000))
+
+    def _one_scan(self) -> None:
+        """One turn of the scan circle (2.1.2), cut before the input refresh."""
+        now = self.clock[0]
+        while self.interrupts.queue and self.running:
+            self._interrupt(self.interrupts.routines[self.interrupts.queue.pop(0)])
+        self.inputs.refresh(now)
+        if self.running:
+            self.clocks.refresh(now, self._first)
+            self.timers.advance()
+            self._execute()
+            self._housekeeping()
+        self._pass(now + self.period_us)
+        self.scans += 1
+
+    def _execute(self) -> None:
+        """The user program, once. What stops it is state of the machine, not an exception."""
+        self._spent_ns = self.program.steps * self.model.instruction_ns
+        try:
+            if self.engine.scan():
+                self.stop()
+        except Overrun:
+            self._stop_with(WATCHDOG)
+        except Exception as error:
+            raise self._our_bug(error) from error
+
+    def _housekeeping(self) -> None:
+        """After the program: first-scan relays go OFF, scan times are noted."""
+        relays, registers = self._special
+        numbers = self.model.registers
+        if self._first:
+            self._first = False
+            relays[self.model.relays["first scan"]] = relays[self.model.relays["power up"]] = False
+        period = (self.period_us + 500) // 1000
+        if registers[numbers["scan time"]] != period or not registers[numbers["least scan time"]]:
+            registers[numbers["scan time"]] = period
+            least = registers[numbers["least scan time"]]
+            registers[numbers["least scan time"]] = min(least, period) if least else period
+            registers[numbers["greatest scan time"]] = max(registers[numbers["greatest scan time"]], period)
+
+    def _pass(self, until: int) -> None:
+        """Time goes on to `until`; interrupt programs run at the time of their event."""
+        if self.running and self.interrupts.routines:
+            self.interrupts.arm(self.clock[0])
+            while self.running and (event := self.interrupts.take(until)) is not None:
+                self.clock[0], routine = event
+                if routine is not None:
+                    self._interrupt(routine)
+        self.clock[0] = until
+
+    def _interrupt(self, routine: str) -> None:
+        lists = self.memory.lists
+        frame = lists["LM"][:], lists["V"][:]
+        self.memory.clear("LM")
+        self.memory.clear("V")
+        self.timers.advance()
+        try:
+            if self.engine.run(routine):
+                self.stop()
+        except Overrun:
+            self._stop_with(WATCHDOG)
+        except Exception as error:
+            raise self._our_bug(error) from error
+        lists["LM"][:], lists["V"][:] = frame
+
+    def _spend(self, steps: int) -> None:
+        """A loop or a jump back executes `steps` once more; the watchdog looks at the sum (decision on 2.1.2)."""
+        self._spent_ns += max(1, steps) * self.model.instruction_ns
+        if self._spent_ns > self.system.watchdog_ms * 1_000_000 > 0:
+            raise Overrun
+
+    def watchdog_reset(self) -> None:
+        """WDT: the program's time counts from zero again."""
+        self._spent_ns = 0
+
+    def _stop_with(self, code: int) -> None:
+        """A serious error: STOP, SM3 and SD3, the ERR lamp."""
+        self._services["FRAMES"].clear()
+        self.faults.note(code)
+        self.system_error = code
+        self.stop()
+        relays, registers = self._special
+        relays[self.model.relays["system error"]] = True
+        registers[self.model.registers["system error"]] = code
+
+    def _our_bug(self, error: Exception) -> Exception:
+        line = 0
+        frames, engine = error.__traceback__, self.engine
+        while frames is not None:
+            if isinstance(engine, CompiledEngine) and frames.tb_frame.f_code.co_filename == engine.filename:
+                line = engine.line_of(frames.tb_lineno)
+            frames = frames.tb_next
+        return RuntimeError(f"a bug of ecsim met in the program's line {line or 'unknown'}: {type(error).__name__}: {error}")
+
+    def until(self, name: str, timeout_ms: float = 10_000, value: Any = 1) -> float:
+        """Scan until a device has a value (ON when none is given); the simulated ms it took. Raises EcsimError when it does not happen in time."""
+        began = self.clock[0]
+        while self[name] != value:
+            if self.clock[0] - began >= timeout_ms * 1000:
+                raise EcsimError(f"{name} did not become {value} within {timeout_ms:g} ms of simulated time; it is {self[name]}")
+            self._one_scan()
+        self._asked = self.clock[0]
+        return (self.clock[0] - began) / 1000
+
+    @property
+    def time_us(self) -> int:
+        """Simulated time since power-up in microseconds."""
+        return self.clock[0]
+
+    # -- devices ------------------------------------------------------------------------------------------------
+
+    def __getitem__(self, name: str) -> int | float:
+        return self.memory.get(*self.memory.parse(name, self._names))
+
+    def __setitem__(self, name: str, value: Any) -> None:
+        device, kind = self.memory.parse(name, self._names)
+        if device.area == "X":
+            self._set_inputs(device, value)
+        elif not self._read_only(device):
+            self.memory.set(device, kind, value)
+
+    get = __getitem__
+
+    def set(self, values: dict[str, Any]) -> None:
+        """Write several devices."""
+        for name, value in values.items():
+            self[name] = value
+
+    def _set_inputs(self, device: Device | Bits, value) -> None:
+        """X is the wiring: the level is held on the terminal."""
+        if isinstance(device, Bits):
+            for place in range(4 * device.digits):
+                self.inputs.set(device.number + place, value >> place & 1, self.clock[0])
+        elif value in (0, 1):
+            self.inputs.set(device.number, int(value), self.clock[0])
+        else:
+            raise EcsimError(f"{device} is one bit: 0 or 1, not {value!r}")
+
+    def _read_only(self, device: Device | Bits) -> bool:
+        """A write from outside to what the system writes is ignored (3.1.9)."""
+        fixed = {self.model.special_bits: self.model.read_only_relays, self.model.special_words: self.model.read_only_registers}
+        return device.number in fixed.get(device.area, ())
+
+    def force(self, name: str, value: int) -> None:
+        """Hold a bit or register at a value, whatever program and wiring say, until `unforce`."""
+        device, kind = self.memory.parse(name, self._names)
+        if isinstance(device, Bits) or (kind is not BOOL and kind.words != 1):
+            raise EcsimError(f"{name}: one bit or one 16-bit register can be forced")
+        self.memory.force(device, self.memory._fitting(device, kind, value))
+        self._rebind()
+
+    def unforce(self, name: str | None = None) -> None:
+        """Release a forced device, or all of them."""
+        for each in [name] if name is not None else list(self.forced):
+            device, _ = self.memory.parse(each, self._names)
+            self.memory.unforce(device)
+        self.inputs.changed = True
+        self._rebind()
+
+    @property
+    def forced(self) -> dict[str, int]:
+        """Forced devices and their values."""
+        return self.memory.forced()
+
+    @property
+    def names(self) -> dict[str, str]:
+        """Canonical device -> the name that the program gives it."""
+        return self.program.names()
+
+    @property
+    def errors(self) -> list[MachineError]:
+        """What SD3 and SD20 to SD24 say, in words, the system error first."""
+        codes = [self.system_error] if self.system_error else []
+        codes += [code for code in self.faults.codes() if code not in codes]
+        return [MachineError(code, MEANINGS.get(code, "unknown")) for code in codes]
+
+    # -- state --------------------------------------------------------------------------------------------------
+
+    def snapshot(self) -> dict[str, Any]:
+        """Everything that changes while the PLC runs, to be given to `restore` of the same Plc with the same program."""
+        return {
+            "memory": self.memory.snapshot(),
+            "inputs": self.inputs.snapshot(),
+            "interrupts": (self.interrupts.enabled, list(self.interrupts.due), dict(self.interrupts.routines), list(self.interrupts.queue)),
+            "clocks": (self.clocks.began, self.clocks.due),
+            "watched": dict(self.timers.watched),
+            "plc": (self.clock[0], self.scans, self.running, self._first, self.system_error, self._asked),
+            "trace": copy.copy(self.trace),
+        }
+
+    def restore(self, snapshot: dict[str, Any]) -> None:
+        """Go back to a snapshot."""
+        self.memory.restore(snapshot["memory"])
+        self.inputs.restore(snapshot["inputs"])
+        enabled, due, routines, queue = snapshot["interrupts"]
+        self.interrupts.enabled, self.interrupts.due, self.interrupts.routines = enabled, list(due), dict(routines)
+        self.interrupts.queue[:] = queue
+        self.clocks.began, self.clocks.due = snapshot["clocks"]
+        self.timers.watched = dict(snapshot["watched"])
+        self.clock[0], self.scans, self.running, self._first, self.system_error, self._asked = snapshot["plc"]
+        if snapshot["trace"] is not None and SteppingEngine in self._engines:
+            self._engines[SteppingEngine].trace = snapshot["trace"]
+
+    def in_use(self, areas: Iterable[str]) -> list[Device]:
+        """The devices of some areas that the program names, in order."""
+        found = {
+            (operand.area, operand.number)
+            for instruction in self.program.instructions
+            for operand in instruction.operands
+            if isinstance(operand, Device) and operand.area in areas and operand.index is None
+        }
+        return [Device(area, number) for area in areas for _, number in sorted(pair for pair in found if pair[0] == area)]
+
+    def __repr__(self) -> str:
+        state = "RUN" if self.running else "STOP"
+        return f"<Plc {self.model.name} {state}, {self.program.steps} steps>"

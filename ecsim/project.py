@@ -1,0 +1,61 @@
+"""Where a program's text comes from: a string, an .il file, or a project folder with plc.toml and *.il files."""
+
+import tomllib
+from pathlib import Path
+
+from .errors import EcsimError
+
+
+def read_project(program: str | Path) -> tuple[str, str]:
+    """The instruction list and its name. A one-line string that ends in .il, or names a folder, is a path."""
+    if isinstance(program, Path) or _is_path(program):
+        path = Path(program)
+        if path.is_dir():
+            return _folder(path), path.name
+        return _text(path), path.name
+    if not isinstance(program, str):
+        raise EcsimError(f"a program is a text, a path or a Program, not {type(program).__name__}")
+    return program, ""
+
+
+def _is_path(text: object) -> bool:
+    if not isinstance(text, str) or "\n" in text or not text.strip():
+        return False
+    return text.strip().lower().endswith(".il") or ((("/" in text or "\\" in text) and "//" not in text) and " " not in text.strip())
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        raise EcsimError(f"there is no file {path}; give the path of an .il file or a project folder") from None
+    except UnicodeDecodeError as error:
+        raise EcsimError(f"{path} is no UTF-8 text (byte {error.start}); save it as UTF-8") from None
+    except OSError as error:
+        raise EcsimError(f"{path} cannot be read: {error.strerror}") from None
+
+
+def _folder(folder: Path) -> str:
+    settings(folder)
+    files = sorted(folder.glob("*.il"))
+    if not files:
+        raise EcsimError(f"{folder} holds no .il file; put the program into {folder / 'main.il'}")
+    return "\n".join(_text(path) for path in files)
+
+
+def settings(folder: Path) -> dict:
+    """The content of a project's plc.toml, {} when there is none; its keys are `model` and `scan_ms`."""
+    path = folder / "plc.toml"
+    if not path.exists():
+        return {}
+    try:
+        found = tomllib.loads(_text(path))
+    except tomllib.TOMLDecodeError as error:
+        raise EcsimError(f"{path} is no TOML: {error}; write lines like model = \"EC20\"") from None
+    known = {"model": str, "scan_ms": (int, float), "input_filter_ms": (int, float)}
+    for key, value in found.items():
+        if key not in known:
+            raise EcsimError(f"{path}: there is no setting {key!r}; known are {', '.join(known)}")
+        if not isinstance(value, known[key]) or isinstance(value, bool):
+            raise EcsimError(f"{path}: {key} is {value!r}; expected {'text' if known[key] is str else 'a number'}")
+    return found

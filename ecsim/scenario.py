@@ -1,0 +1,149 @@
+"""Scenarios: steps of set, run and expect. One form for conformance cases, exercises and demonstrations."""
+
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from .assembler import assemble
+from .errors import EcsimError, ProgramError
+from .memory import Memory
+from .models import get_model
+from .plc import Plc, SystemBlock
+from .values import REAL
+
+REAL_TOLERANCE = 1e-5
+_SYSTEM_KEYS = {"retain", "hold_values", "data_block_valid", "stop_outputs", "stop_output_table", "watchdog_ms", "constant_scan_ms", "input_filter_ms"}
+_STEP_KEYS = {"set", "scans", "ms", "expect", "expect_range", "error", "action", "note"}
+
+
+@dataclass(frozen=True, slots=True)
+class Mismatch:
+    """One expectation that did not hold: in step `step` (from 1) a device had `value` instead of `expected`."""
+
+    step: int
+    device: str
+    value: Any
+    expected: Any
+
+    def __str__(self) -> str:
+        return f"step {self.step}: {self.device} is {self.value}, expected {self.expected}"
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """How one case went on one model; `reason` is empty when it passed."""
+
+    case: str
+    model: str
+    mismatches: tuple[Mismatch, ...] = ()
+    reason: str = ""
+
+    @property
+    def passed(self) -> bool:
+        return not self.mismatches and not self.reason
+
+    def __str__(self) -> str:
+        what = self.reason or "; ".join(map(str, self.mismatches)) or "passed"
+        return f"{self.case} [{self.model}]: {what}"
+
+
+def same(value: int | float, expected: int | float, real: bool) -> bool:
+    """Whether a value is the expected one; REAL numbers to a relative 1e-5."""
+    if not real:
+        return value == expected
+    return value == expected or abs(value - expected) <= REAL_TOLERANCE * max(abs(expected), 1e-30)
+
+
+def run_steps(plc: Plc, steps: list[dict[str, Any]]) -> Iterator[Mismatch]:
+    """Carry out steps on a Plc, yielding every expectation that fails. In each: action, set, the run, then expect."""
+    for number, step in enumerate(steps, 1):
+        unknown = set(step) - _STEP_KEYS
+        if unknown:
+            raise EcsimError(f"step {number}: the key {sorted(unknown)[0]!r} is not known; known are {', '.join(sorted(_STEP_KEYS))}")
+        _act(plc, step.get("action"), number)
+        plc.set(step.get("set", {}))
+        if "ms" in step:
+            plc.advance(ms=step["ms"])
+        else:
+            plc.scan(step.get("scans", 0))
+        for name, expected in step.get("expect", {}).items():
+            value = plc[name]
+            if not same(value, expected, plc.memory.parse(name, plc._names)[1] is REAL):
+                yield Mismatch(number, name, value, expected)
+        for name, limits in step.get("expect_range", {}).items():
+            value = plc[name]
+            if not limits["min"] <= value <= limits["max"]:
+                yield Mismatch(number, name, value, f"{limits['min']} to {limits['max']}")
+        if "error" in step and plc["SD20"] != step["error"]:
+            yield Mismatch(number, "SD20", plc["SD20"], step["error"])
+
+
+def _act(plc: Plc, action: str | None, number: int) -> None:
+    actions = {None: lambda: None, "run": plc.run, "stop": plc.stop, "power_cycle": plc.power_cycle}
+    if action not in actions:
+        raise EcsimError(f"step {number}: there is no action {action!r}; known are run, stop, power_cycle")
+    actions[action]()
+
+
+def run_case(case: dict[str, Any], model: str, tracing: bool = False) -> Verdict:
+    """One conformance case on one model, from a cold start; inputs are ideal unless the case says otherwise."""
+    name = case["id"]
+    try:
+        program = assemble(case["il"], model)
+    except ProgramError as error:
+        return Verdict(name, model) if case.get("compile_error") else Verdict(name, model, reason=str(error))
+    if case.get("compile_error"):
+        return Verdict(name, model, reason="the program was accepted, expected a compile error")
+    try:
+        plc = Plc(model, scan_ms=case.get("scan_ms", 10), system=_system(case, model))
+        plc.tracing = tracing
+        plc.load(program)
+        plc.run()
+        return Verdict(name, model, tuple(run_steps(plc, case["steps"])))
+    except EcsimError as error:
+        return Verdict(name, model, reason=str(error))
+
+
+def _system(case: dict[str, Any], model: str) -> SystemBlock:
+    given = dict(case.get("system_block", {}))
+    unknown = set(given) - _SYSTEM_KEYS
+    if unknown:
+        raise EcsimError(f"the system block's key {sorted(unknown)[0]!r} is not known; known are {', '.join(sorted(_SYSTEM_KEYS))}")
+    memory = Memory(get_model(model))
+    if "retain" in given:
+        given["retain"] = {
+            area: [(memory.parse(_named(area, first))[0].number, memory.parse(_named(area, last))[0].number) for first, last in ranges]
+            for area, ranges in given["retain"].items()
+        }
+    filter_ms = given.pop("input_filter_ms", None)
+    if filter_ms is None:
+        filter_ms = get_model(model).filter_ms if _uses_refresh_filter(case["il"]) else 0
+    return SystemBlock(**given, input_filter_ms=filter_ms, data_block=case.get("data_block", {}))
+
+
+def _named(area: str, bound: str | int) -> str:
+    return bound if isinstance(bound, str) and not bound.isdigit() else f"{area}{bound}"
+
+
+def _uses_refresh_filter(text: str) -> bool:
+    return any(line.split()[:1] == ["REFF"] for line in text.upper().splitlines())
+
+
+def load_cases(path: str | Path) -> list[dict[str, Any]]:
+    """The cases of a file; raises EcsimError when it is no JSON array of cases."""
+    path = Path(path)
+    try:
+        cases = json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise EcsimError(f"there is no file {path}") from None
+    except (json.JSONDecodeError, UnicodeDecodeError) as error:
+        raise EcsimError(f"{path} is no JSON: {error}") from None
+    if not isinstance(cases, list):
+        raise EcsimError(f"{path} holds no array of cases")
+    for place, case in enumerate(cases, 1):
+        missing = {"id", "models", "il"} - set(case) if isinstance(case, dict) else {"id"}
+        if missing:
+            raise EcsimError(f"{path}: case {place} lacks {', '.join(sorted(missing))}")
+    return cases
