@@ -16,7 +16,7 @@ FLOORS = (
     ("memory", "hardware"),
     ("instructions",),
     ("models",),
-    ("assembler",),
+    ("assembler", "project"),
     ("engines",),
     ("plc",),
     ("views", "record", "history", "modbus", "comms", "verify", "scenario", "help"),
