@@ -94,6 +94,7 @@ class Plc:
             "FRAMES": [],
             "LOOPS": [0] * 16,
             "tick": self.timers.tick,
+            "begin": self.timers.begin,
             "resume": self.timers.resume,
             "watch": self.timers.watch,
             "fault": self.faults.note,
