@@ -3,9 +3,11 @@
 from .assembler import Program, assemble
 from .errors import EcsimError, ProgramError
 from .plc import Plc, SystemBlock
+from .record import Recording
+from .session import Session
 
 __version__ = "0.1.0"
-__all__ = ["EcsimError", "Plc", "Program", "ProgramError", "SystemBlock", "compile"]
+__all__ = ["EcsimError", "Plc", "Program", "ProgramError", "Recording", "Session", "SystemBlock", "compile"]
 
 
 def compile(text: str, model: str = "EC20") -> Program:  # noqa: A001 - the public name of the act

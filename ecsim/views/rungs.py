@@ -262,30 +262,49 @@ _STRUCTURAL = {
 
 def words(flow: Series, loads: bool = True) -> Iterator[Word]:
     """The instruction list of a series; `loads` tells that it begins a block, so that a contact at its head is an LD."""
-    for place, item in enumerate(flow.items):
-        yield from _item_words(item, "LD" if loads and place == 0 else "AND")
+    todo: list[tuple[Item | Series | Word, str]] = [(flow, "LD" if loads else "AND")]
+    while todo:
+        node, join = todo.pop()
+        if isinstance(node, Word):
+            yield node
+        elif isinstance(node, Contact):
+            yield _joined(node.word, join)
+        elif isinstance(node, Gate | Output):
+            yield node.word
+        else:
+            todo += reversed(list(_parts(node, join)))
 
 
-def _item_words(item: Item, join: str) -> Iterator[Word]:
-    if isinstance(item, Contact):
-        yield _joined(item.word, join)
-    elif isinstance(item, Gate | Output):
-        yield item.word
-    elif isinstance(item, Block):
-        yield from words(item.flow)
-        if item.join:
-            yield item.join
-    elif isinstance(item, Parallel):
-        first, *others = item.ways
-        yield from words(first)
-        for way in others:
-            yield from _item_words(way, "OR")
+def _parts(node: Item | Series, join: str) -> Iterator[tuple[Item | Series | Word, str]]:
+    """What a node is made of, in the order of the instruction list, and how a contact there joins the flow."""
+    if isinstance(node, Series):
+        for place, item in enumerate(node.items):
+            yield item, "AND" if place else join
+    elif isinstance(node, Block):
+        yield node.flow, "LD"
+        if node.join:
+            yield node.join, ""
+    elif isinstance(node, Parallel):
+        for place, way in enumerate(node.ways):
+            yield way, "OR" if place else "LD"
     else:
-        yield item.keep
-        yield from words(item.branches[0], loads=False)
-        for turn, branch in zip(item.turns, item.branches[1:], strict=True):
-            yield turn
-            yield from words(branch, loads=False)
+        for turn, branch in zip((node.keep, *node.turns), node.branches, strict=True):
+            yield turn, ""
+            yield branch, "AND"
+
+
+def depth(flow: Series) -> int:
+    """How deep a tree is nested; an output with something behind it counts, as its branch does in the drawing."""
+    deepest = 0
+    todo: list[tuple[Item | Series | Word, int]] = [(flow, 1)]
+    while todo:
+        node, level = todo.pop()
+        deepest = max(deepest, level)
+        if isinstance(node, Series):
+            level += sum(isinstance(item, Output) for item in node.items)
+        if isinstance(node, Series | Block | Parallel | Fork):
+            todo += [(part, level + 1) for part, _ in _parts(node, "")]
+    return deepest
 
 
 def _joined(word: Word, join: str) -> Word:

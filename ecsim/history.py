@@ -1,0 +1,60 @@
+"""The way back: keyframes and the actions between them. The same actions at the same scans give the same run."""
+
+from collections.abc import Callable
+from typing import Any
+
+EVERY = 100  # scans between two keyframes
+KEEP = 60  # keyframes kept: a minute at 10 ms a scan
+
+
+class History:
+    """Keyframes of a simulation, and what was done to it from outside, by scan."""
+
+    def __init__(self, take: Callable[[], Any], put: Callable[[Any], None]):
+        self.take, self.put = take, put
+        self.frames: list[tuple[int, Any]] = []
+        self.actions: list[tuple[int, Callable[[], None]]] = []
+
+    def clear(self) -> None:
+        """Forget everything: the program or the plant is another one."""
+        self.frames.clear()
+        self.actions.clear()
+
+    def note(self, scan: int, action: Callable[[], None]) -> None:
+        """An action from outside, done before scan number `scan`."""
+        self.actions.append((scan, action))
+
+    def tick(self, scan: int) -> None:
+        """Called before each scan: takes a keyframe when one is due."""
+        if scan % EVERY == 0 or not self.frames:
+            self.frames.append((scan, self.take()))
+            if len(self.frames) > KEEP:
+                del self.frames[0]
+                first = self.frames[0][0]
+                self.actions = [entry for entry in self.actions if entry[0] >= first]
+
+    @property
+    def first(self) -> int | None:
+        """The earliest scan that can be gone back to."""
+        return self.frames[0][0] if self.frames else None
+
+    def go(self, scan: int, step: Callable[[], None]) -> bool:
+        """Go back to just before scan number `scan`, running forward again from the keyframe with `step`; what came later is dropped."""
+        while self.frames and self.frames[-1][0] > scan:
+            self.frames.pop()
+        if not self.frames:
+            return False
+        at, frame = self.frames[-1]
+        if at == scan:
+            self.frames.pop()
+        self.put(frame)
+        journal = [entry for entry in self.actions if at <= entry[0] <= scan]
+        self.actions = [entry for entry in self.actions if entry[0] <= scan]
+        place = 0
+        for number in range(at, scan + 1):
+            while place < len(journal) and journal[place][0] == number:
+                journal[place][1]()
+                place += 1
+            if number < scan:
+                step()
+        return True

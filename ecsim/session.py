@@ -1,0 +1,398 @@
+"""Session: a Plc, its plant and those who look on, as fast as possible or paced. The only module that reads the wall clock."""
+
+import contextlib
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from operator import itemgetter
+from typing import Any, Protocol
+
+from .errors import EcsimError
+from .history import History
+from .plc import Plc
+from .record import Recording
+
+FRAME_S = 1 / 30  # observers are called at most this often
+SLICE_S = 0.02  # at full speed, how long scans run before actions and observers get their turn
+LATE_S = 0.25  # a delay beyond this is given up instead of being made up for
+LOG = 500
+
+
+class Plant(Protocol):
+    """What a session needs of a machine."""
+
+    wiring: Any
+
+    def step(self, seconds: float, outputs: dict[str, int]) -> dict[str, int]: ...
+
+
+@dataclass(frozen=True, slots=True)
+class StepChange:
+    """A step began or ended: simulated time in us, scan, step ("S20"), active or not."""
+
+    time_us: int
+    scan: int
+    step: str
+    active: bool
+
+
+_sessions: dict[str, "Session"] = {}
+_registry = threading.Lock()
+
+
+class Session:
+    """Runs a Plc with its plant in one daemon thread; a new session of the same name takes the place of the former one.
+
+    `speed` is simulated seconds for each real second, None as fast as it goes. Every method may be called from any
+    thread; what changes the simulation waits until the scan in progress has ended.
+    """
+
+    def __init__(self, plc: Plc, plant: Plant | None = None, name: str = "lab", speed: float | None = 1.0, record: Recording | None = None):
+        self.plc, self.plant, self.name = plc, plant, name
+        self.recording = record
+        self._speed = speed
+        self._plant_on = plant is not None
+        self.state = "stopped"
+        self.error: Exception | None = None
+        self.late = 0  # how often the wall clock ran away
+        self.log: deque[StepChange] = deque(maxlen=LOG)
+        self.step_since: dict[str, int] = {}  # active step -> simulated time in us at which it began
+        self._lock = threading.RLock()
+        self._wake = threading.Event()
+        self._actions: deque[Callable[[Plc], Any]] = deque()
+        self._observers: list[Callable[[Session], Any]] = []
+        self._thread: threading.Thread | None = None
+        self._task: Any = None
+        self._ending = False
+        self._initial = self._take()
+        self.history = History(self._take, self._put)
+        self._bind()
+
+    # -- the simulation -----------------------------------------------------------------------------------------
+
+    def _bind(self) -> None:
+        """Look up once what each scan needs."""
+        plc = self.plc
+        self._program = plc.program
+        self._generation = plc.memory.generation
+        wiring = list(self.plant.wiring) if self.plant is not None else []
+        places = [(name, plc.memory.parse(name)[0]) for name in wiring]
+        self._outputs = [(name, device.number) for name, device in places if device.area == "Y"]
+        self._inputs = {name: device.number for name, device in places if device.area == "X"}
+        self._steps = [device.number for device in plc.in_use(("S",))]
+        self._step_values = itemgetter(*self._steps, self._steps[0]) if self._steps else None
+        self._last_steps: tuple | None = None
+
+    def _scan(self) -> None:
+        """The plant moves under the outputs for the time of one scan, then the PLC scans once."""
+        plc = self.plc
+        if plc.program is not self._program or plc.memory.generation != self._generation:
+            if plc.program is not self._program:
+                self.history.clear()
+                self.step_since.clear()
+            self._bind()
+        self.history.tick(plc.scans)
+        self._step()
+
+    def _step(self) -> None:
+        plc = self.plc
+        before = plc.clock[0]
+        plc.scan()
+        if self._plant_on:
+            image = plc.memory.lists["Y"]
+            sensors = self.plant.step((plc.clock[0] - before) / 1e6, {name: int(image[number]) for name, number in self._outputs})
+            now, terminals = plc.clock[0], plc.inputs.terminals
+            for name, level in sensors.items():
+                number = self._inputs[name]
+                if terminals[number] != level:
+                    plc.inputs.set(number, level, now)
+        if self._step_values is not None:
+            self._note_steps()
+        if self.recording is not None:
+            self.recording.sample()
+
+    def _note_steps(self) -> None:
+        values = self._step_values(self.plc.memory.lists["S"])
+        if values == self._last_steps:
+            return
+        before = self._last_steps or (False,) * len(values)
+        self._last_steps = values
+        now, scan = self.plc.clock[0], self.plc.scans
+        for number, old, new in zip(self._steps, before, values, strict=False):
+            if bool(old) != bool(new):
+                self.log.append(StepChange(now, scan, f"S{number}", bool(new)))
+                if new:
+                    self.step_since[f"S{number}"] = now
+                else:
+                    self.step_since.pop(f"S{number}", None)
+
+    def _take(self) -> tuple:
+        plant = self.plant.state() if self.plant is not None else None
+        return self.plc.snapshot(), plant, self._plant_on, dict(self.step_since), list(self.log)
+
+    def _put(self, frame: tuple) -> None:
+        snapshot, plant, on, since, log = frame
+        self.plc.restore(snapshot)
+        if plant is not None:
+            self.plant.restore(plant)
+        self._plant_on = on
+        self.step_since = dict(since)
+        self.log = deque(log, maxlen=LOG)
+        self._last_steps = None if not self._steps else self._step_values(self.plc.memory.lists["S"])
+        if self.recording is not None:
+            self.recording.forget(self.plc.clock[0])
+
+    # -- control ------------------------------------------------------------------------------------------------
+
+    def start(self) -> "Session":
+        """Begin to run in a thread of its own (where there are no threads, as a task of the event loop); a session of the same name ends first."""
+        with _registry:
+            former = _sessions.get(self.name)
+            if former is not None and former is not self:
+                former._end()
+            _sessions[self.name] = self
+        if self.state in ("running", "paused"):
+            return self
+        self._ending, self.error = False, None
+        self.state = "running"
+        thread = threading.Thread(target=self._drive, name=f"ecsim {self.name}", daemon=True)
+        try:
+            thread.start()
+            self._thread = thread
+        except RuntimeError:  # Pyodide has no threads
+            import asyncio
+
+            self._task = asyncio.ensure_future(self._drive_task())
+        return self
+
+    def stop(self) -> None:
+        """End the session; raises what went wrong inside, if anything did."""
+        self._end()
+        with _registry:
+            if _sessions.get(self.name) is self:
+                del _sessions[self.name]
+        if self.error is not None:
+            raise self.error
+
+    def _end(self) -> None:
+        self._ending = True
+        self._wake.set()
+        if self._thread is not None and self._thread is not threading.current_thread():
+            self._thread.join(timeout=5)
+        self._thread = self._task = None
+        if self.state != "failed":
+            self.state = "stopped"
+        self._show()
+
+    def run(self) -> None:
+        """Go on after a pause; a PLC in STOP is put into RUN."""
+        if self.state == "failed":
+            raise EcsimError(f"the session {self.name!r} has failed: {self.error}; reset() begins anew")
+        self._do(lambda plc: plc.run())
+        if self._thread is None and self._task is None:
+            self.start()
+        self.state = "running"
+        self._wake.set()
+
+    def pause(self) -> None:
+        """Hold simulated time."""
+        if self.state == "running":
+            with self._lock:
+                self.state = "paused"
+            self._wake.set()
+            self._show()
+
+    def scan(self, count: int = 1) -> None:
+        """Pause, and do so many scans."""
+        self.pause()
+        with self._lock:
+            self._drain()
+            for _ in range(count):
+                self._scan()
+        self._show()
+
+    def next_step(self, limit_ms: float = 600_000) -> str | None:
+        """Pause, and scan until a step begins or ends; the step that began or ended, None when none does within the limit."""
+        self.pause()
+        with self._lock:
+            self._drain()
+            began, last = self.plc.clock[0], self.log[-1] if self.log else None
+            while self.plc.clock[0] - began < limit_ms * 1000:
+                self._scan()
+                if self.log and self.log[-1] is not last:
+                    self._show()
+                    return self.log[-1].step
+        self._show()
+        return None
+
+    def back(self, scans: int = 1) -> bool:
+        """Pause, and go back by so many scans; false when that is further than is remembered."""
+        self.pause()
+        with self._lock:
+            self._drain()
+            done = self.history.go(self.plc.scans - scans, self._step)
+        self._show()
+        return done
+
+    def reset(self) -> None:
+        """Everything as it was when the session was made, in RUN."""
+        with self._lock:
+            self._actions.clear()
+            self.history.clear()
+            self.log.clear()
+            self.step_since.clear()
+            self._bind()
+            self._put((*self._initial[:3], {}, []))
+            if self.recording is not None:
+                self.recording.forget(-1)
+            self.plc.power_cycle()
+            if self.state == "failed":
+                self.state, self.error = "stopped", None
+        self._show()
+
+    @property
+    def speed(self) -> float | None:
+        """Simulated seconds for each real one; None is as fast as it goes."""
+        return self._speed
+
+    @speed.setter
+    def speed(self, value: float | None) -> None:
+        if value is not None and not 0 < value <= 1_000_000:
+            raise EcsimError(f"the speed is {value!r}; it is a factor above 0, or None for as fast as it goes")
+        self._speed = value
+        self._wake.set()
+
+    @property
+    def plant_on(self) -> bool:
+        """Whether the plant drives the inputs; switched off, they are all in the hand of the user."""
+        return self._plant_on
+
+    @plant_on.setter
+    def plant_on(self, on: bool) -> None:
+        if self.plant is not None:
+            self._do(lambda plc: setattr(self, "_plant_on", bool(on)))
+
+    # -- actions and observers ------------------------------------------------------------------------------------
+
+    def post(self, action: Callable[[Plc], Any]) -> None:
+        """Have `action(plc)` done before the next scan; it is remembered, so that a step back repeats it."""
+        self._actions.append(action)
+        self._wake.set()
+        if self.state not in ("running",):
+            with self._lock:
+                self._drain()
+            self._show()
+
+    def set(self, device: str, value: Any) -> None:
+        """Write a device, or put a level on an input, before the next scan. A bad name or value raises here."""
+        found, kind = self.plc.memory.parse(device, self.plc._names)
+        self.plc.memory._fitting(found, kind, value)
+        self.post(lambda plc: plc.__setitem__(device, value))
+
+    def _do(self, action: Callable[[Plc], Any]) -> None:
+        with self._lock:
+            self._drain()
+            self.history.note(self.plc.scans, lambda: action(self.plc))
+            action(self.plc)
+        self._show()
+
+    def _drain(self) -> None:
+        while self._actions:
+            action = self._actions.popleft()
+            self.history.note(self.plc.scans, lambda action=action: action(self.plc))
+            action(self.plc)
+
+    def observe(self, callback: "Callable[[Session], Any]") -> Callable[[], None]:
+        """Have `callback(session)` called after changes, at most 30 times a second, in the session's thread; returns what ends it."""
+        self._observers.append(callback)
+
+        def end() -> None:
+            with contextlib.suppress(ValueError):
+                self._observers.remove(callback)
+
+        return end
+
+    def _show(self) -> None:
+        for callback in list(self._observers):
+            callback(self)
+
+    @contextlib.contextmanager
+    def held(self) -> Iterator[Plc]:
+        """The Plc between two scans, for as long as the `with` lasts."""
+        with self._lock:
+            yield self.plc
+
+    # -- the loop -----------------------------------------------------------------------------------------------
+
+    def _drive(self) -> None:
+        for wait in self._turns():
+            if wait:
+                self._wake.wait(wait)
+                self._wake.clear()
+
+    async def _drive_task(self) -> None:
+        import asyncio
+
+        for wait in self._turns():
+            await asyncio.sleep(wait)
+
+    def _turns(self) -> Iterator[float]:
+        """One turn a frame: actions, the scans that are due, observers; yields how long to wait."""
+        try:
+            deadline, shown = time.perf_counter(), 0.0
+            debt = 0.0  # simulated us that are due
+            while not self._ending:
+                now = time.perf_counter()
+                if self.state != "running":
+                    deadline, debt = now, 0.0
+                    yield 0.25
+                    continue
+                with self._lock:
+                    self._drain()
+                    debt = self._catch_up(now, deadline, debt)
+                deadline = now
+                if time.perf_counter() - shown >= FRAME_S:
+                    shown = time.perf_counter()
+                    self._show()
+                yield self._pause_s(debt)
+        except Exception as error:
+            self.error, self.state = error, "failed"
+            with contextlib.suppress(Exception):
+                self._show()
+
+    def _catch_up(self, now: float, deadline: float, debt: float) -> float:
+        """Do the scans that are due; what cannot be made up for is given up."""
+        speed = self._speed
+        if speed is None:
+            while time.perf_counter() - now < SLICE_S and self.state == "running" and not self._ending:
+                self._scan()
+            return 0.0
+        debt += (now - deadline) * 1e6 * speed
+        if debt > LATE_S * 1e6 * speed:
+            self.late += 1
+            debt = min(debt, LATE_S * 1e6 * speed)
+        while debt >= self.plc.period_us:
+            debt -= self.plc.period_us
+            self._scan()
+            if self.state != "running" or self._ending:
+                break
+            if time.perf_counter() - now > LATE_S:
+                self.late += 1
+                return 0.0
+        return debt
+
+    def _pause_s(self, debt: float) -> float:
+        if self._speed is None:
+            return 0.0005
+        due = (self.plc.period_us - debt) / 1e6 / self._speed
+        return min(max(due, 0.001), FRAME_S)
+
+    def __repr__(self) -> str:
+        return f"<Session {self.name!r} {self.state}>"
+
+
+def session(name: str = "lab") -> Session | None:
+    """The running session of that name, None when there is none."""
+    return _sessions.get(name)

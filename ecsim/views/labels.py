@@ -1,0 +1,131 @@
+"""What stands beside a symbol: names above addresses, values in figures, and the words of a tip."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from ..assembler.program import Program, Unit
+from ..devices import Bits, Constant, Device, Operand
+from ..instructions import TABLE
+from ..memory import Memory
+from ..models import Model
+from ..values import BOOL, REAL, DataType
+from .rungs import Word
+
+# The letter in a coil; every other output is a function box.
+COILS = {"OUT": "", "SET": "S", "RST": "R"}
+# What an element that changes the flow is called.
+GATES = {"EU": "rising", "ED": "falling", "INV": "inverted"}
+
+
+@dataclass(frozen=True, slots=True)
+class Label:
+    """An operand for people: its name, empty when it has none, and its address."""
+
+    name: str
+    address: str
+
+    def __str__(self) -> str:
+        return f"{self.name} {self.address}" if self.name else self.address
+
+
+class Labels:
+    """The names of one unit's operands."""
+
+    def __init__(self, unit: Unit, program: Program | None = None):
+        self.unit, self.program = unit, program
+        self.names: dict[str, str] = program.names() if program else {}
+        self.locals = {str(variable.device): f"#{variable.name}" for variable in unit.variables.values()}
+
+    def of(self, word: Word, place: int) -> Label:
+        """The label of an operand: the name that was written, else one that the program declares for the device."""
+        written, operand = word.written[place], word.operands[place]
+        address = str(operand)
+        if isinstance(operand, Device | Bits):
+            if written.upper() != address:
+                return Label(written, address)
+            return Label(self.locals.get(address) or self.names.get(address, ""), address)
+        return Label("", address)
+
+    def named(self, device: Device) -> Label:
+        """The label of a device that stands in no instruction."""
+        return Label(self.names.get(str(device), ""), str(device))
+
+    def roles(self, word: Word) -> list[str]:
+        """What each operand is called in the manual, or in the subroutine that is called."""
+        specs = TABLE[word.mnemonic].operands
+        roles = [spec.name for spec in specs]
+        callee = next((u for u in self.program.units if u.name == str(word.operands[0])), None) if self.program and len(word.operands) > len(specs) else None
+        roles += [variable.name for variable in callee.parameters] if callee else []
+        return roles + [""] * (len(word.operands) - len(roles))
+
+
+# -- values -----------------------------------------------------------------------------------------------------
+
+Reader = Callable[[Memory], int | float | None]
+
+
+def operand_type(word: Word, place: int) -> DataType | None:
+    """As what an operand is read; None where it has no value (the name of a subroutine)."""
+    specs = TABLE[word.mnemonic].operands
+    if place < len(specs):
+        return specs[place].type
+    operand = word.operands[place]
+    return BOOL if isinstance(operand, Device) and operand.area in ("X", "Y", "M", "S", "LM", "SM") else TABLE["MOV"].operands[0].type
+
+
+def reader(operand: Operand, kind: DataType | None, model: Model) -> Reader | None:
+    """A function that reads an operand's present value from memory; None for what has no value that changes."""
+    if not isinstance(operand, Device | Bits) or kind is None:
+        return None
+    if operand.index is None:
+        return lambda memory: memory.get(operand, kind)
+    area, count = operand.area, model.areas[operand.area].count
+    length = 4 * operand.digits if isinstance(operand, Bits) else max(1, kind.words)
+
+    def indexed(memory: Memory) -> int | float | None:
+        number = operand.number + memory.lists[operand.index_area][operand.index]
+        if not 0 <= number <= count - length:
+            return None
+        device = Bits(operand.digits, area, number) if isinstance(operand, Bits) else Device(area, number)
+        return memory.get(device, kind)
+
+    return indexed
+
+
+def figure(value: int | float | None) -> str:
+    """A value as it is shown: thousands with a comma, a true minus, seven digits of a REAL; a dash where there is none."""
+    if value is None:
+        return "–"
+    if isinstance(value, int):
+        return f"{value:,}".replace("-", "−") if value.__class__ is int else str(int(value))
+    return f"{value:.7g}".replace("-", "−")
+
+
+def constant_value(operand: Operand) -> int | float | None:
+    """The number of a constant operand."""
+    return operand.value if isinstance(operand, Constant) else None
+
+
+def is_real(word: Word, place: int) -> bool:
+    return operand_type(word, place) is REAL
+
+
+def sign(mnemonic: str) -> str:
+    """The comparison of a compare contact, as it stands between its operands."""
+    signs = {"<=": "≤", ">=": "≥", "<>": "≠"}
+    bare = mnemonic.lstrip("ABCDEFGHIJKLMNOPQRSTUVWXYZ")
+    return signs.get(bare, bare)
+
+
+def plain_sign(mnemonic: str) -> str:
+    """The comparison as it is written in a program."""
+    return mnemonic.lstrip("ABCDEFGHIJKLMNOPQRSTUVWXYZ")
+
+
+def contact_words(word: Word, labels: Mapping | Labels) -> str:
+    """A contact in words: "X5 Start, normally closed", "D10 < 12"."""
+    if len(word.operands) > 1:
+        return f" {sign(word.mnemonic)} ".join(str(labels.of(word, place)) for place in range(2))
+    label = labels.of(word, 0)
+    what = "normally closed" if word.mnemonic.endswith("I") else "normally open"
+    return f"{label.address} {label.name}".rstrip() + f", {what}"
