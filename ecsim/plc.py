@@ -81,10 +81,11 @@ class Plc:
         self.system_error = 0
         self.program: Program | None = None
         self._engines: dict[type, CompiledEngine | SteppingEngine] = {}
-        self._tracing = False
+        self._tracing = self._stepping = False
         self._asked = 0
-        self._spent_ns = 0
-        self._scan_us = 0
+        self._spent_ns = self._program_ns = 0
+        self._noted_us = 0
+        self._fixed_us = 0 if scan_ms is None else max(round(scan_ms * 1000), self.system.constant_scan_ms * 1000)
         self._first = True
         self._names: dict[str, Device] = {}
         self._special = self.memory.lists[self.model.special_bits], self.memory.lists[self.model.special_words]
@@ -129,6 +130,7 @@ class Plc:
         if self.running:
             self.stop()
         self.program = program
+        self._program_ns = program.steps * self.model.instruction_ns
         self._engines = {CompiledEngine: compiled}
         self._names = {name.casefold(): variable.device for name, variable in program.variables.items()}
         self._choose_engine()
@@ -145,24 +147,37 @@ class Plc:
         self._choose_engine()
 
     @property
+    def engine(self) -> str:
+        """The engine that runs the program: "compiled", or "stepping" (always so while tracing). It may be changed between any two scans."""
+        return "stepping" if isinstance(self._engine, SteppingEngine) else "compiled"
+
+    @engine.setter
+    def engine(self, name: str) -> None:
+        if name not in ("compiled", "stepping"):
+            raise EcsimError(f"there is no engine {name!r}; choose compiled or stepping")
+        self._stepping = name == "stepping"
+        self._choose_engine()
+
+    @property
     def trace(self) -> Trace | None:
         """What happened in the last traced scan, None before the first one."""
         engine = self._engines.get(SteppingEngine)
         return engine.trace if engine is not None else None
 
     def _choose_engine(self) -> None:
-        kind = SteppingEngine if self._tracing else CompiledEngine
+        kind = SteppingEngine if self._tracing or self._stepping else CompiledEngine
         if kind not in self._engines:
             self._engines[kind] = kind(self.program, self.memory, self._services)
-        self.engine = self._engines[kind]
-        if self._tracing:
-            self.engine.recording = True
+        self._engine = self._engines[kind]
+        if kind is SteppingEngine:
+            self._engine.recording = self._tracing
         self._rebind()
 
     def _rebind(self) -> None:
         """After a change of what is forced: the code holds the memory's lists."""
-        if self.engine.generation != self.memory.generation:
-            self.engine.bind()
+        if self._engine.generation != self.memory.generation:
+            self._engine.bind()
+        self._run_program = self._engine.scan
         self._special = self.memory.lists[self.model.special_bits], self.memory.lists[self.model.special_words]
 
     # -- RUN, STOP, power ---------------------------------------------------------------------------------------
@@ -268,61 +283,71 @@ class Plc:
     @property
     def period_us(self) -> int:
         """How long the next scan takes."""
-        if self.system.constant_scan_ms:
-            return max(self.system.constant_scan_ms * 1000, self._modelled_us() if self.scan_ms is None else 0)
-        return self._modelled_us() if self.scan_ms is None else round(self.scan_ms * 1000)
+        return self._fixed_us or self._modelled_us()
 
     def _modelled_us(self) -> int:
-        return max(1000, -(-self._spent_ns // 1000))
+        """The time that the instructions add up to; a constant scan (SM8) waits for its end."""
+        return max(self.system.constant_scan_ms * 1000, 1000, -(-self._spent_ns // 1000))
 
     def _one_scan(self) -> None:
         """One turn of the scan circle (2.1.2), cut before the input refresh."""
         now = self.clock[0]
-        while self.interrupts.queue and self.running:
-            self._interrupt(self.interrupts.routines[self.interrupts.queue.pop(0)])
-        self.inputs.refresh(now)
+        if self.interrupts.queue:
+            self._serve_queue()
+        if self.inputs.changed:
+            self.inputs.refresh(now)
         if self.running:
             self.clocks.refresh(now, self._first)
-            self.timers.advance()
+            if self.timers.watched:
+                self.timers.advance()
             self._execute()
-            self._housekeeping()
-        self._pass(now + self.period_us)
+            period = self.period_us
+            if self._first or period != self._noted_us:
+                self._housekeeping(period)
+            if self.interrupts.routines:
+                self._pass(now + period)
+            self.clock[0] = now + period
+        else:
+            self.clock[0] = now + self.period_us
         self.scans += 1
 
     def _execute(self) -> None:
         """The user program, once. What stops it is state of the machine, not an exception."""
-        self._spent_ns = self.program.steps * self.model.instruction_ns
+        self._spent_ns = self._program_ns
         try:
-            if self.engine.scan():
+            if self._run_program():
                 self.stop()
         except Overrun:
             self._stop_with(WATCHDOG)
         except Exception as error:
             raise self._our_bug(error) from error
 
-    def _housekeeping(self) -> None:
+    def _housekeeping(self, period_us: int) -> None:
         """After the program: first-scan relays go OFF, scan times are noted."""
         relays, registers = self._special
         numbers = self.model.registers
         if self._first:
             self._first = False
             relays[self.model.relays["first scan"]] = relays[self.model.relays["power up"]] = False
-        period = (self.period_us + 500) // 1000
-        if registers[numbers["scan time"]] != period or not registers[numbers["least scan time"]]:
-            registers[numbers["scan time"]] = period
-            least = registers[numbers["least scan time"]]
-            registers[numbers["least scan time"]] = min(least, period) if least else period
-            registers[numbers["greatest scan time"]] = max(registers[numbers["greatest scan time"]], period)
+        self._noted_us = period_us
+        period = (period_us + 500) // 1000
+        registers[numbers["scan time"]] = period
+        least = registers[numbers["least scan time"]]
+        registers[numbers["least scan time"]] = min(least, period) if least else period
+        registers[numbers["greatest scan time"]] = max(registers[numbers["greatest scan time"]], period)
+
+    def _serve_queue(self) -> None:
+        """The interrupt programs that the edges of inputs asked for."""
+        while self.interrupts.queue and self.running:
+            self._interrupt(self.interrupts.routines[self.interrupts.queue.pop(0)])
 
     def _pass(self, until: int) -> None:
         """Time goes on to `until`; interrupt programs run at the time of their event."""
-        if self.running and self.interrupts.routines:
-            self.interrupts.arm(self.clock[0])
-            while self.running and (event := self.interrupts.take(until)) is not None:
-                self.clock[0], routine = event
-                if routine is not None:
-                    self._interrupt(routine)
-        self.clock[0] = until
+        self.interrupts.arm(self.clock[0])
+        while self.running and (event := self.interrupts.take(until)) is not None:
+            self.clock[0], routine = event
+            if routine is not None:
+                self._interrupt(routine)
 
     def _interrupt(self, routine: str) -> None:
         lists = self.memory.lists
@@ -331,7 +356,7 @@ class Plc:
         self.memory.clear("V")
         self.timers.advance()
         try:
-            if self.engine.run(routine):
+            if self._engine.run(routine):
                 self.stop()
         except Overrun:
             self._stop_with(WATCHDOG)
@@ -361,7 +386,7 @@ class Plc:
 
     def _our_bug(self, error: Exception) -> Exception:
         line = 0
-        frames, engine = error.__traceback__, self.engine
+        frames, engine = error.__traceback__, self._engine
         while frames is not None:
             if isinstance(engine, CompiledEngine) and frames.tb_frame.f_code.co_filename == engine.filename:
                 line = engine.line_of(frames.tb_lineno)
@@ -458,7 +483,7 @@ class Plc:
             "memory": self.memory.snapshot(),
             "inputs": self.inputs.snapshot(),
             "interrupts": (self.interrupts.enabled, list(self.interrupts.due), dict(self.interrupts.routines), list(self.interrupts.queue)),
-            "clocks": (self.clocks.began, self.clocks.due),
+            "clocks": (self.clocks.began, self.clocks.due, self.clocks.slow_due),
             "watched": dict(self.timers.watched),
             "plc": (self.clock[0], self.scans, self.running, self._first, self.system_error, self._asked),
             "trace": copy.copy(self.trace),
@@ -471,7 +496,7 @@ class Plc:
         enabled, due, routines, queue = snapshot["interrupts"]
         self.interrupts.enabled, self.interrupts.due, self.interrupts.routines = enabled, list(due), dict(routines)
         self.interrupts.queue[:] = queue
-        self.clocks.began, self.clocks.due = snapshot["clocks"]
+        self.clocks.began, self.clocks.due, self.clocks.slow_due = snapshot["clocks"]
         self.timers.watched = dict(snapshot["watched"])
         self.clock[0], self.scans, self.running, self._first, self.system_error, self._asked = snapshot["plc"]
         if snapshot["trace"] is not None and SteppingEngine in self._engines:

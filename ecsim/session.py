@@ -79,7 +79,11 @@ class Session:
         self._generation = plc.memory.generation
         wiring = list(self.plant.wiring) if self.plant is not None else []
         places = [(name, plc.memory.parse(name)[0]) for name in wiring]
-        self._outputs = [(name, device.number) for name, device in places if device.area == "Y"]
+        outputs = [(name, device.number) for name, device in places if device.area == "Y"]
+        self._output_names = [name for name, _ in outputs]
+        self._driven = itemgetter(*(number for _, number in outputs), 0) if outputs else lambda image: ()
+        self._last_driven: tuple | None = None
+        self._last_sensors: dict[str, int] | None = None
         self._inputs = {name: device.number for name, device in places if device.area == "X"}
         self._steps = [device.number for device in plc.in_use(("S",))]
         self._step_values = itemgetter(*self._steps, self._steps[0]) if self._steps else None
@@ -101,13 +105,16 @@ class Session:
         before = plc.clock[0]
         plc.scan()
         if self._plant_on:
-            image = plc.memory.lists["Y"]
-            sensors = self.plant.step((plc.clock[0] - before) / 1e6, {name: int(image[number]) for name, number in self._outputs})
-            now, terminals = plc.clock[0], plc.inputs.terminals
-            for name, level in sensors.items():
-                number = self._inputs[name]
-                if terminals[number] != level:
-                    plc.inputs.set(number, level, now)
+            now = plc.clock[0]
+            driven = self._driven(plc.memory.lists["Y"])
+            if driven != self._last_driven:
+                self._last_driven = driven
+                self._outputs = dict(zip(self._output_names, map(int, driven), strict=False))
+            sensors = self.plant.step((now - before) / 1e6, self._outputs)
+            if sensors != self._last_sensors:
+                self._last_sensors = sensors
+                for name, level in sensors.items():
+                    plc.inputs.set(self._inputs[name], level, now)
         if self._step_values is not None:
             self._note_steps()
         if self.recording is not None:
@@ -138,6 +145,7 @@ class Session:
         if plant is not None:
             self.plant.restore(plant)
         self._plant_on = on
+        self._last_driven = self._last_sensors = None
         self.step_since = dict(since)
         self.log = deque(log, maxlen=LOG)
         self._last_steps = None if not self._steps else self._step_values(self.plc.memory.lists["S"])
@@ -272,7 +280,11 @@ class Session:
     @plant_on.setter
     def plant_on(self, on: bool) -> None:
         if self.plant is not None:
-            self._do(lambda plc: setattr(self, "_plant_on", bool(on)))
+            self._do(lambda plc: self._switch_plant(bool(on)))
+
+    def _switch_plant(self, on: bool) -> None:
+        self._plant_on = on
+        self._last_sensors = None  # a sensor that was overridden by hand is driven again
 
     # -- actions and observers ------------------------------------------------------------------------------------
 
