@@ -1,0 +1,12 @@
+"""The pallet-lift conveyor of manual section 7.5.1: a simple sequence."""
+
+from pathlib import Path
+
+from .picture import PICTURE
+from .plant import Conveyor
+
+TITLE = "Pallet lift"
+STATEMENT = Path(__file__).with_name("statement.md")
+SOLUTION = Path(__file__).with_name("solution.il")
+
+__all__ = ["PICTURE", "SOLUTION", "STATEMENT", "TITLE", "Conveyor"]
