@@ -34,7 +34,6 @@ class Stage:
     """A run of instructions and the control behind them."""
 
     ops: list[Op] = field(default_factory=list)
-    runs: list[Callable] = field(default_factory=list)
     control: Callable | None = None
     position: int = -1  # of the control's instruction, -1 when it has none
 
@@ -56,6 +55,7 @@ class SteppingEngine:
         self.kept: list = []
         self.returns: list[Callable] = []
         self.stages: list[Stage] = []
+        self.bare: list[tuple[list[Callable], Callable]] = []  # of each stage what a walk without recording needs
         self.entries: dict[str, int] = {}
         _Builder(self).build()
 
@@ -75,13 +75,13 @@ class SteppingEngine:
 
     def _bare(self, place: int) -> bool:
         del self.stack[:], self.kept[:], self.returns[:]
-        stages = self.stages
+        stages = self.bare
         flow = True
         while place >= 0:
-            stage = stages[place]
-            for run in stage.runs:
+            runs, control = stages[place]
+            for run in runs:
                 flow = run(flow)
-            place = stage.control(flow)
+            place = control(flow)
         return place == HALT
 
     def walk(self, unit: str) -> Iterator[int]:
@@ -160,8 +160,7 @@ class _Builder(Writer):
         exec(compile("\n".join(self.text), f"<ecsim {self.model.name} stepping>", "exec"), namespace)  # numbers and names of ours only
         for give in self.wanted:
             give(namespace)
-        for stage in engine.stages:
-            stage.runs = [op.run for op in stage.ops]
+        engine.bare = [([op.run for op in stage.ops], stage.control) for stage in engine.stages]
 
     # -- stages -------------------------------------------------------------------------------------------------
 
@@ -420,18 +419,28 @@ class _Builder(Writer):
 
             opening.control = guard
             return
-        steps, slot = [step.number for step in region.steps], region.slot
+        active, was, slot = lists["S"], lists["E"], region.slot
+        first, *others = [step.number for step in region.steps]
 
         def enter(flow) -> int:
-            active = all(lists["S"][number] for number in steps)
-            was, lists["E"][slot] = lists["E"][slot], active
-            if active:
+            if active[first] and all([active[number] for number in others]):
+                was[slot] = True
                 return body
-            if was:
+            if was[slot]:
+                was[slot] = False
                 made["clear"]()
             return after
 
-        opening.control = enter
+        def enter_alone(flow) -> int:
+            if active[first]:
+                was[slot] = True
+                return body
+            if was[slot]:
+                was[slot] = False
+                made["clear"]()
+            return after
+
+        opening.control = enter if others else enter_alone
 
     def _loop(self, region: Region, turns: list, body: int, after: int):
         left = [0]

@@ -1,6 +1,6 @@
 """What stands beside a symbol: names above addresses, values in figures, and the words of a tip."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from ..assembler.program import Program, Unit
@@ -8,7 +8,7 @@ from ..devices import Bits, Constant, Device, Operand
 from ..instructions import TABLE
 from ..memory import Memory
 from ..models import Model
-from ..values import BOOL, REAL, DataType
+from ..values import BOOL, DataType
 from .rungs import Word
 
 # The letter in a coil; every other output is a function box.
@@ -106,26 +106,38 @@ def constant_value(operand: Operand) -> int | float | None:
     return operand.value if isinstance(operand, Constant) else None
 
 
-def is_real(word: Word, place: int) -> bool:
-    return operand_type(word, place) is REAL
+def sign(word: Word, pretty: bool = True) -> str:
+    """The comparison of a compare contact as it stands between its operands: "<", "D≥" for 32 bits, "R≠" for REAL."""
+    written = word.mnemonic.removeprefix("LD")
+    return written.replace("<=", "≤").replace(">=", "≥").replace("<>", "≠") if pretty else written
 
 
-def sign(mnemonic: str) -> str:
-    """The comparison of a compare contact, as it stands between its operands."""
-    signs = {"<=": "≤", ">=": "≥", "<>": "≠"}
-    bare = mnemonic.lstrip("ABCDEFGHIJKLMNOPQRSTUVWXYZ")
-    return signs.get(bare, bare)
+def compares(word: Word) -> bool:
+    """Whether a contact compares two values."""
+    return len(word.operands) > 1
 
 
-def plain_sign(mnemonic: str) -> str:
-    """The comparison as it is written in a program."""
-    return mnemonic.lstrip("ABCDEFGHIJKLMNOPQRSTUVWXYZ")
+def contact_words(word: Word, labels: Labels) -> str:
+    """A contact in words: "X5 Start, normally closed", "D10 Count < 12"."""
+    if compares(word):
+        return f"{_spoken(labels.of(word, 0))} {sign(word)} {_spoken(labels.of(word, 1))}"
+    what = "normally closed" if inverted(word) else "normally open"
+    return f"{_spoken(labels.of(word, 0))}, {what}"
 
 
-def contact_words(word: Word, labels: Mapping | Labels) -> str:
-    """A contact in words: "X5 Start, normally closed", "D10 < 12"."""
-    if len(word.operands) > 1:
-        return f" {sign(word.mnemonic)} ".join(str(labels.of(word, place)) for place in range(2))
-    label = labels.of(word, 0)
-    what = "normally closed" if word.mnemonic.endswith("I") else "normally open"
-    return f"{label.address} {label.name}".rstrip() + f", {what}"
+def inverted(word: Word) -> bool:
+    """Whether a contact of one bit is closed while the bit is OFF."""
+    return bool(TABLE[word.mnemonic].function(False))
+
+
+def output_words(word: Word, labels: Labels) -> str:
+    """A coil or box in words: "Y0 Motor, coil", "TON T0 Settle 5"."""
+    spoken = [_spoken(labels.of(word, place)) for place in range(len(word.operands))]
+    if word.mnemonic in COILS:
+        kind = {"": "coil", "S": "set coil", "R": "reset coil"}[COILS[word.mnemonic]]
+        return f"{spoken[0]}, {kind}"
+    return " ".join([word.mnemonic, *spoken])
+
+
+def _spoken(label: Label) -> str:
+    return f"{label.address} {label.name}".rstrip()

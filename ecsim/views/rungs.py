@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 from ..assembler.program import Instruction, Network, Program, Unit
 from ..devices import Operand
@@ -301,7 +302,7 @@ def depth(flow: Series) -> int:
         node, level = todo.pop()
         deepest = max(deepest, level)
         if isinstance(node, Series):
-            level += sum(isinstance(item, Output) for item in node.items)
+            level += sum(isinstance(a, Output) and not isinstance(b, Output) for a, b in pairwise(node.items))
         if isinstance(node, Series | Block | Parallel | Fork):
             todo += [(part, level + 1) for part, _ in _parts(node, "")]
     return deepest
