@@ -13,9 +13,9 @@ ROOT = Path(__file__).resolve().parent.parent
 FLOORS = (
     ("errors", "values"),
     ("devices",),
+    ("models",),  # data about devices, and nothing more
     ("memory", "hardware"),
     ("instructions",),
-    ("models",),
     ("assembler", "project"),
     ("engines",),
     ("plc",),
