@@ -35,7 +35,9 @@ def _parser() -> argparse.ArgumentParser:
     cases.add_argument("--only", default="", metavar="TEXT", help="only cases whose id contains TEXT")
     cases.add_argument("--stepping", action="store_true", help="use the stepping engine")
     cases.set_defaults(act=_cases)
-    check = commands.add_parser("check", help="compile a program and list its errors", description="Compile a program and list all its errors.")
+    check = commands.add_parser(
+        "check", help="compile a program and list its errors", description="Compile a program and list all its errors."
+    )
     check.add_argument("program", type=Path, metavar="PROGRAM", help="an .il file or a project folder")
     check.add_argument("--model", choices=list(MODELS), help="EC20 unless the project says otherwise")
     check.set_defaults(act=_check)

@@ -96,7 +96,9 @@ def ec_constant(text: str) -> Constant | None:
     try:
         return Constant(int(digits, base), text, unsigned=True)
     except ValueError:
-        raise OperandError(f"{digits} is no number of base {base}", f"base {base} has the digits 0 to {'F' if base == 16 else base - 1}") from None
+        raise OperandError(
+            f"{digits} is no number of base {base}", f"base {base} has the digits 0 to {'F' if base == 16 else base - 1}"
+        ) from None
 
 
 _DEVICE = re.compile(r"(?:[kK](?P<digits>\d+))?(?P<area>[A-Za-z]+)(?P<number>\d+)(?:(?P<ia>[A-Za-z])(?P<index>\d+))?")

@@ -59,7 +59,13 @@ class Plc:
     `input_filter_ms` overrides the model's filter (10 ms EC20, 8 ms EC10); `system` is the whole system block.
     """
 
-    def __init__(self, model: str | Model = "EC20", scan_ms: float | None = 10, input_filter_ms: float | None = None, system: SystemBlock | None = None):
+    def __init__(
+        self,
+        model: str | Model = "EC20",
+        scan_ms: float | None = 10,
+        input_filter_ms: float | None = None,
+        system: SystemBlock | None = None,
+    ):
         self.model = get_model(model)
         if scan_ms is not None and not 0.001 <= scan_ms <= 60_000:
             raise EcsimError(f"scan_ms is {scan_ms!r}; a scan takes from 0.001 to 60000 ms, or None to model it")
@@ -117,7 +123,9 @@ class Plc:
             text, name = read_project(program)
             program = assemble(text, self.model, name)
         if program.model.name != self.model.name:
-            raise EcsimError(f"the program was compiled for {program.model.name}, this is an {self.model.name}; compile it for {self.model.name}")
+            raise EcsimError(
+                f"the program was compiled for {program.model.name}, this is an {self.model.name}; compile it for {self.model.name}"
+            )
         compiled = CompiledEngine.__new__(CompiledEngine)
         slots = self.memory.lists["E"]
         kept = list(slots)
@@ -227,7 +235,9 @@ class Plc:
     def _initialise(self, hold: bool) -> None:
         """The order of 2.1.6: retained, data block, held values, cleared."""
         retained = {
-            area: {n for first, last in ranges for n in range(first, last + 1)} for area, ranges in self.system.retain.items() if area in self.model.retained
+            area: {n for first, last in ranges for n in range(first, last + 1)}
+            for area, ranges in self.system.retain.items()
+            if area in self.model.retained
         }
         if not hold:
             for area in self.model.areas:

@@ -51,7 +51,7 @@ def settings(folder: Path) -> dict:
     try:
         found = tomllib.loads(_text(path))
     except tomllib.TOMLDecodeError as error:
-        raise EcsimError(f"{path} is no TOML: {error}; write lines like model = \"EC20\"") from None
+        raise EcsimError(f'{path} is no TOML: {error}; write lines like model = "EC20"') from None
     known = {"model": str, "scan_ms": (int, float), "input_filter_ms": (int, float)}
     for key, value in found.items():
         if key not in known:

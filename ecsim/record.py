@@ -25,7 +25,7 @@ class Recording:
         self._places: list[tuple[str, int]] = []
         for name in self.names:
             device, kind = plc.memory.parse(name, plc._names)
-            if not isinstance(device, Device) or kind.words == 2 and device.area != "C":
+            if not isinstance(device, Device) or (kind.words == 2 and device.area != "C"):
                 raise EcsimError(f"{name} cannot be recorded; name single bits and registers")
             self._places.append((f"{device.area}B" if kind is BOOL and device.area in ("T", "C") else device.area, device.number))
         self._generation = -1

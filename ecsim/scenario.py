@@ -14,7 +14,16 @@ from .plc import Plc, SystemBlock
 from .values import REAL
 
 REAL_TOLERANCE = 1e-5
-_SYSTEM_KEYS = {"retain", "hold_values", "data_block_valid", "stop_outputs", "stop_output_table", "watchdog_ms", "constant_scan_ms", "input_filter_ms"}
+_SYSTEM_KEYS = {
+    "retain",
+    "hold_values",
+    "data_block_valid",
+    "stop_outputs",
+    "stop_output_table",
+    "watchdog_ms",
+    "constant_scan_ms",
+    "input_filter_ms",
+}
 _STEP_KEYS = {"set", "scans", "ms", "expect", "expect_range", "error", "action", "note"}
 
 
@@ -61,7 +70,7 @@ def run_steps(plc: Plc, steps: list[dict[str, Any]]) -> Iterator[Mismatch]:
     for number, step in enumerate(steps, 1):
         unknown = set(step) - _STEP_KEYS
         if unknown:
-            raise EcsimError(f"step {number}: the key {sorted(unknown)[0]!r} is not known; known are {', '.join(sorted(_STEP_KEYS))}")
+            raise EcsimError(f"step {number}: the key {min(unknown)!r} is not known; known are {', '.join(sorted(_STEP_KEYS))}")
         _act(plc, step.get("action"), number)
         plc.set(step.get("set", {}))
         if "ms" in step:
@@ -110,7 +119,7 @@ def _system(case: dict[str, Any], model: str) -> SystemBlock:
     given = dict(case.get("system_block", {}))
     unknown = set(given) - _SYSTEM_KEYS
     if unknown:
-        raise EcsimError(f"the system block's key {sorted(unknown)[0]!r} is not known; known are {', '.join(sorted(_SYSTEM_KEYS))}")
+        raise EcsimError(f"the system block's key {min(unknown)!r} is not known; known are {', '.join(sorted(_SYSTEM_KEYS))}")
     memory = Memory(get_model(model))
     if "retain" in given:
         given["retain"] = {

@@ -292,7 +292,7 @@ class Session:
         """Have `action(plc)` done before the next scan; it is remembered, so that a step back repeats it."""
         self._actions.append(action)
         self._wake.set()
-        if self.state not in ("running",):
+        if self.state != "running":
             with self._lock:
                 self._drain()
             self._show()

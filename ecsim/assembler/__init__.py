@@ -22,7 +22,7 @@ class _Assembler:
     def __init__(self, source: Source, model: Model):
         self.source, self.model = source, model
         self.definitions = {
-            **{mnemonic: row for mnemonic, row in TABLE.items() if model.family not in ("EC",) or model.name in row.models},
+            **{mnemonic: row for mnemonic, row in TABLE.items() if model.family != "EC" or model.name in row.models},
             **{spelled: TABLE[mnemonic] for spelled, mnemonic in model.spelling.items()},
         }
 
@@ -32,7 +32,9 @@ class _Assembler:
         if not self.source.units:
             self.source.units.append(RawUnit("MAIN", "MAIN", 1))
         if self.source.units[0].kind != "MAIN":
-            self.source.report(self.source.units[0].line, "there is no main program", "put it between PROGRAM MAIN and END_PROGRAM", "4.2.1")
+            self.source.report(
+                self.source.units[0].line, "there is no main program", "put it between PROGRAM MAIN and END_PROGRAM", "4.2.1"
+            )
         self.units = [self._unit(raw) for raw in self.source.units]
         self._unit_names()
         slots = 0
@@ -88,12 +90,22 @@ class _Assembler:
                 self.source.report(raw.line, refused.message, refused.hint, refused.section, word=2)
                 continue
             if not isinstance(device, Device) or device.index is not None:
-                self.source.report(raw.line, f"{raw.name} names {shown(raw.what)}, which is no single device", "name a device, for example X0 or D100", word=2)
+                self.source.report(
+                    raw.line,
+                    f"{raw.name} names {shown(raw.what)}, which is no single device",
+                    "name a device, for example X0 or D100",
+                    word=2,
+                )
                 continue
             folded[raw.name.casefold()] = raw.name
             variables[raw.name] = Variable(raw.name, device, raw.comment, role="GLOBAL", line=raw.line)
         if len(variables) > self.model.limits["global variables"]:
-            self.source.report(self.source.globals[0].line, f"{len(variables)} global variables", f"{self.model.name} has room for {self.model.limits['global variables']}", "2.2.3")
+            self.source.report(
+                self.source.globals[0].line,
+                f"{len(variables)} global variables",
+                f"{self.model.name} has room for {self.model.limits['global variables']}",
+                "2.2.3",
+            )
         return variables
 
     def _good_name(self, raw: RawVariable, resolver: Resolver) -> bool:
@@ -122,7 +134,9 @@ class _Assembler:
             if raw.event.isdigit() and raw.event.isascii() and len(raw.event) < 4:
                 event = int(raw.event)
             else:
-                self.source.report(raw.line, f"EVENT {shown(raw.event)} is no event number", "chapter 9 numbers them from 0 to 37", "9.1", word=3)
+                self.source.report(
+                    raw.line, f"EVENT {shown(raw.event)} is no event number", "chapter 9 numbers them from 0 to 37", "9.1", word=3
+                )
         unit = Unit(raw.kind, raw.name, event, line=raw.line)
         room = {"LM": 0, "V": 0}
         count = {"bit": 0, "word": 0}
@@ -138,11 +152,15 @@ class _Assembler:
                 self.source.report(declared.line, f"only a subroutine has {declared.role} variables", "", "4.4.3")
             area = "LM" if kind is BOOL else "V"
             count["bit" if kind is BOOL else "word"] += 1
-            unit.variables[declared.name.casefold()] = Variable(declared.name, Device(area, room[area]), declared.comment, kind, declared.role, declared.line)
+            unit.variables[declared.name.casefold()] = Variable(
+                declared.name, Device(area, room[area]), declared.comment, kind, declared.role, declared.line
+            )
             room[area] += max(1, kind.words)
         for what, number in count.items():
             if number > self.model.limits[f"{what} variables"]:
-                self.source.report(raw.line, f"{raw.name} has {number} {what} variables", f"at most {self.model.limits[f'{what} variables']}", "4.4.2")
+                self.source.report(
+                    raw.line, f"{raw.name} has {number} {what} variables", f"at most {self.model.limits[f'{what} variables']}", "4.4.2"
+                )
         return unit
 
     def _unit_names(self) -> None:
@@ -151,11 +169,19 @@ class _Assembler:
         for unit in self.units:
             first = seen.setdefault(unit.name.upper(), unit)
             if first is not unit:
-                self.source.report(unit.line, f"the name {shown(unit.name)} stands twice", f"it stands in line {first.line} already", word=1)
+                self.source.report(
+                    unit.line, f"the name {shown(unit.name)} stands twice", f"it stands in line {first.line} already", word=1
+                )
             if unit.event is not None:
                 other = events.setdefault(unit.event, unit)
                 if other is not unit:
-                    self.source.report(unit.line, f"the event {unit.event} has two interrupt programs", f"{other.name} in line {other.line} serves it already", "9.2", word=3)
+                    self.source.report(
+                        unit.line,
+                        f"the event {unit.event} has two interrupt programs",
+                        f"{other.name} in line {other.line} serves it already",
+                        "9.2",
+                        word=3,
+                    )
         count = sum(unit.kind == "SUBROUTINE" for unit in self.units)
         if count > self.model.limits["subroutines"]:
             self.source.report(self.units[-1].line, f"{count} subroutines", f"at most {self.model.limits['subroutines']}", "4.4.2")
@@ -179,19 +205,27 @@ class _Assembler:
         written = statement.mnemonic
         row = TABLE.get(written)
         if row is not None:
-            self.source.report(statement.line, f"{self.model.name} has no {written}", f"{written} exists on {' and '.join(row.models)}", row.section)
+            self.source.report(
+                statement.line, f"{self.model.name} has no {written}", f"{written} exists on {' and '.join(row.models)}", row.section
+            )
             return
         from difflib import get_close_matches
 
         close = get_close_matches(written[:12], self.definitions, 3, 0.6)
-        self.source.report(statement.line, f"{shown(written)} is no instruction", f"did you mean {' or '.join(close)}?" if close else "one instruction a line, for example LD X0")
+        self.source.report(
+            statement.line,
+            f"{shown(written)} is no instruction",
+            f"did you mean {' or '.join(close)}?" if close else "one instruction a line, for example LD X0",
+        )
 
     def _operands(self, definition: Definition, statement: Statement, unit: Unit):
         specs, words = definition.operands, statement.operands
         if len(specs) != len(words):
             names = " ".join(spec.name for spec in specs)
             wanted = f"{definition.mnemonic} takes {len(specs)} operand{'s' if len(specs) != 1 else ''}" + (f" ({names})" if specs else "")
-            self.source.report(statement.line, f"{wanted}, found {len(words)}", "", definition.section, word=min(len(words), len(specs) + 1))
+            self.source.report(
+                statement.line, f"{wanted}, found {len(words)}", "", definition.section, word=min(len(words), len(specs) + 1)
+            )
             return None
         operands = []
         for place, (spec, word) in enumerate(zip(specs, words, strict=True), 1):
@@ -220,7 +254,9 @@ class _Assembler:
         parameters = callee.parameters
         if len(parameters) != len(words) - 1:
             names = " ".join(variable.name for variable in parameters) or "none"
-            self.source.report(statement.line, f"{callee.name} takes {len(parameters)} operands ({names}), found {len(words) - 1}", "", definition.section)
+            self.source.report(
+                statement.line, f"{callee.name} takes {len(parameters)} operands ({names}), found {len(words) - 1}", "", definition.section
+            )
             return None
         operands: list = [Name(callee.name)]
         for place, (variable, word) in enumerate(zip(parameters, words[1:], strict=True), 2):
@@ -245,7 +281,9 @@ class _Assembler:
         return steps
 
     def _report_instruction(self, instruction: Instruction, message: str, hint: str = "", section: str = "") -> None:
-        self.source.problems.append(Problem(instruction.line, self.source.column(instruction.line, 0), message, hint, section, self.source.name))
+        self.source.problems.append(
+            Problem(instruction.line, self.source.column(instruction.line, 0), message, hint, section, self.source.name)
+        )
 
     # -- calls --------------------------------------------------------------------------------------------------
 
@@ -261,7 +299,12 @@ class _Assembler:
             for instruction in calls[name]:
                 callee = instruction.operands[0].text.upper()
                 if callee in path:
-                    self._report_instruction(instruction, f"{instruction.operands[0]} calls itself, directly or through others", "subroutines cannot recur", "4.4.2")
+                    self._report_instruction(
+                        instruction,
+                        f"{instruction.operands[0]} calls itself, directly or through others",
+                        "subroutines cannot recur",
+                        "4.4.2",
+                    )
                     continue
                 best = max(best, 1 + deepest(callee, (*path, callee)))
             depth[name] = best
@@ -269,7 +312,9 @@ class _Assembler:
 
         for unit in self.units:
             if unit.kind == "MAIN" and deepest(unit.name.upper(), (unit.name.upper(),)) > limit:
-                self._report_instruction(calls[unit.name.upper()][0], f"calls are nested {depth[unit.name.upper()]} deep", f"at most {limit}", "4.4.2")
+                self._report_instruction(
+                    calls[unit.name.upper()][0], f"calls are nested {depth[unit.name.upper()]} deep", f"at most {limit}", "4.4.2"
+                )
             deepest(unit.name.upper(), (unit.name.upper(),))
 
 

@@ -31,7 +31,11 @@ class Resolver:
             variable = local.get(text[1:].casefold())
             if variable is None:
                 known = ", ".join(f"#{v.name}" for v in local.values())
-                raise Refused(f"{shown(text)} is not declared here", f"this unit has {known}" if known else "only subroutines have variables of their own", "4.4.3")
+                raise Refused(
+                    f"{shown(text)} is not declared here",
+                    f"this unit has {known}" if known else "only subroutines have variables of their own",
+                    "4.4.3",
+                )
             return variable.device
         try:
             operand = self.model.syntax.parse(text)
@@ -40,7 +44,11 @@ class Resolver:
         if operand is None:
             variable = self._by_fold.get(text.casefold())
             if variable is None:
-                raise Refused(f"{shown(text)} is neither a device of {self.model.name} nor a declared name", "declare it: VAR_GLOBAL NAME AT DEVICE END_VAR", "")
+                raise Refused(
+                    f"{shown(text)} is neither a device of {self.model.name} nor a declared name",
+                    "declare it: VAR_GLOBAL NAME AT DEVICE END_VAR",
+                    "",
+                )
             return variable.device
         return operand
 
@@ -76,7 +84,12 @@ class Resolver:
             self._index(spec, operand, text)
         else:
             self._area(spec, operand.area, text)
-            self._number(operand.area, operand.number, 1 if self.model.areas[operand.area].kind in ("bit", "timer", "counter") else max(1, spec.type.words), text)
+            self._number(
+                operand.area,
+                operand.number,
+                1 if self.model.areas[operand.area].kind in ("bit", "timer", "counter") else max(1, spec.type.words),
+                text,
+            )
             if operand.area == "C" and spec.type.words:
                 self._counter_width(spec, operand, text)
             if spec.range and spec.kind != "INT":
@@ -97,7 +110,9 @@ class Resolver:
 
     def _constant(self, spec: OperandSpec, constant: Constant, text: str) -> None:
         if "const" not in spec.areas:
-            raise Refused(f"the constant {shown(text)} cannot be {spec.name}", f"{spec.name} ({spec.type.name}) may be {self._allowed(spec)}")
+            raise Refused(
+                f"the constant {shown(text)} cannot be {spec.name}", f"{spec.name} ({spec.type.name}) may be {self._allowed(spec)}"
+            )
         value = constant.value
         if spec.type is REAL:
             if abs(value) > REAL_MAX:
@@ -111,7 +126,9 @@ class Resolver:
                 raise Refused(f"{spec.name} = {shown(text)} is out of range", f"{spec.name} goes from {low} to {high}", "")
         elif not -(1 << spec.type.bits - 1) <= value < 1 << spec.type.bits:
             low, high = -(1 << spec.type.bits - 1), (1 << spec.type.bits) - 1
-            raise Refused(f"{spec.name} = {shown(text)} does not fit into {spec.type.bits} bits", f"constants go from {low} to {high} here", "3.3.3")
+            raise Refused(
+                f"{spec.name} = {shown(text)} does not fit into {spec.type.bits} bits", f"constants go from {low} to {high} here", "3.3.3"
+            )
 
     def _digits(self, spec: OperandSpec, bits: Bits, text: str) -> None:
         if spec.type.words == 1 and bits.digits > 4:
@@ -125,14 +142,19 @@ class Resolver:
             raise Refused(f"{self.model.name} has no {area}{number_text(area, number)} ({room.span})", "", "3.1")
         if number + length > room.count:
             last = f"{area}{number_text(area, room.count - 1)}"
-            raise Refused(f"{shown(text)} reaches beyond {last}, the last {area} of {self.model.name}", f"it takes {length} {area} devices", "3.2")
+            raise Refused(
+                f"{shown(text)} reaches beyond {last}, the last {area} of {self.model.name}", f"it takes {length} {area} devices", "3.2"
+            )
 
     def _counter_width(self, spec: OperandSpec, device: Device, text: str) -> None:
         wide = device.number >= self.model.wide_counters
         if wide and spec.type.words == 1:
             raise Refused(f"{text} holds 32 bits, {spec.name} ({spec.type.name}) takes 16", f"use C0 to C{self.model.wide_counters - 1}")
         if not wide and spec.type.words == 2:
-            raise Refused(f"{text} holds 16 bits, {spec.name} ({spec.type.name}) takes 32", f"use C{self.model.wide_counters} to C{self.model.areas['C'].count - 1}")
+            raise Refused(
+                f"{text} holds 16 bits, {spec.name} ({spec.type.name}) takes 32",
+                f"use C{self.model.wide_counters} to C{self.model.areas['C'].count - 1}",
+            )
 
     def _device_range(self, spec: OperandSpec, device: Device, text: str) -> None:
         low, high = spec.range
@@ -147,10 +169,16 @@ class Resolver:
         if operand.area in (self.model.special_bits, self.model.special_words):
             raise Refused(f"{shown(text)}: special relays and registers cannot be indexed", "name the device itself", "3.2.2")
         if operand.index >= self.model.areas[operand.index_area].count:
-            raise Refused(f"{self.model.name} has no {operand.index_area}{operand.index} ({self.model.areas[operand.index_area].span})", "", "3.2.2")
+            raise Refused(
+                f"{self.model.name} has no {operand.index_area}{operand.index} ({self.model.areas[operand.index_area].span})", "", "3.2.2"
+            )
 
     def _writable(self, spec: OperandSpec, device: Device, text: str) -> None:
         model = self.model
         fixed = {model.special_bits: model.read_only_relays, model.special_words: model.read_only_registers}.get(device.area, ())
         if any(number in fixed for number in range(device.number, device.number + max(1, spec.type.words))):
-            raise Refused(f"{text} is read only", "the system writes it, programs only read it", "3.1.9" if device.area == model.special_bits else "3.1.10")
+            raise Refused(
+                f"{text} is read only",
+                "the system writes it, programs only read it",
+                "3.1.9" if device.area == model.special_bits else "3.1.10",
+            )

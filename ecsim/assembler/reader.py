@@ -104,7 +104,9 @@ class _Reader:
                 continue
             self._line(words, comment.strip(), number)
         if self.unit is not None:
-            source.report(self.unit.line, f"{self.unit.kind} {self.unit.name} has no end", f"write END_{self._header(self.unit)} after its last line")
+            source.report(
+                self.unit.line, f"{self.unit.kind} {self.unit.name} has no end", f"write END_{self._header(self.unit)} after its last line"
+            )
         if self.in_globals:
             source.report(len(lines), "VAR_GLOBAL has no END_VAR")
         return source
@@ -131,7 +133,9 @@ class _Reader:
             match = _BLOCK.match(text, start)
             if match is None:
                 self.source.lines = text.split("\n")
-                self.source.report(text.count("\n", 0, start) + 1, "a comment is not closed", f"end it with {'*/' if opened[0] == '/*' else '*)'}")
+                self.source.report(
+                    text.count("\n", 0, start) + 1, "a comment is not closed", f"end it with {'*/' if opened[0] == '/*' else '*)'}"
+                )
                 return "".join(pieces) + text[position:start]
             after = text[match.end() : (text.find("\n", match.end()) + len(text) + 1) % (len(text) + 1)]
             alone = not text[line_start:start].strip() and not after.strip()
@@ -197,7 +201,12 @@ class _Reader:
             report(number, "VAR_GLOBAL has no END_VAR")
             self.in_globals = False
         if not _NAME.fullmatch(name):
-            report(number, f"{head} needs a name, found {shown(name)}", "for example PROGRAM MAIN, SUBROUTINE SBR_1 or INTERRUPT INT_1 EVENT 26", word=1)
+            report(
+                number,
+                f"{head} needs a name, found {shown(name)}",
+                "for example PROGRAM MAIN, SUBROUTINE SBR_1 or INTERRUPT INT_1 EVENT 26",
+                word=1,
+            )
         event = None
         if kind == "INTERRUPT":
             if len(words) == 4 and words[2].upper() == "EVENT":

@@ -3,7 +3,11 @@
 from ..devices import Device, number_text
 from .program import Instruction, Network, Region, Unit
 
-_LEAVES = {"CFEND": ("MAIN", "the main program", "6.1.5"), "CSRET": ("SUBROUTINE", "a subroutine", "6.1.12"), "CIRET": ("INTERRUPT", "an interrupt program", "6.1.9")}
+_LEAVES = {
+    "CFEND": ("MAIN", "the main program", "6.1.5"),
+    "CSRET": ("SUBROUTINE", "a subroutine", "6.1.12"),
+    "CIRET": ("INTERRUPT", "an interrupt program", "6.1.9"),
+}
 _CLOSERS = {"MCR": "MC", "NEXT": "FOR", "RET": "STL"}
 _OPENERS = {closer_of: closer for closer, closer_of in _CLOSERS.items()}
 
@@ -47,7 +51,12 @@ class _Structure:
         for region in reversed(self.regions):
             opening = self.unit.instructions[region.opening]
             closer = _OPENERS[region.kind]
-            self.report(opening, f"{opening} has no {closer}", f"close it with {closer}{f' {region.number}' if region.kind == 'MC' else ''}", "7.2.3" if region.kind == "STL" else "5.2.1" if region.kind == "MC" else "6.1.1")
+            self.report(
+                opening,
+                f"{opening} has no {closer}",
+                f"close it with {closer}{f' {region.number}' if region.kind == 'MC' else ''}",
+                "7.2.3" if region.kind == "STL" else "5.2.1" if region.kind == "MC" else "6.1.1",
+            )
             region.closing = end
         self._check_jumps()
         if self.unit.kind == "MAIN":
@@ -66,7 +75,12 @@ class _Structure:
         if not self._flow(instruction):
             return
         if join == "OR" and not self.alone:
-            self.report(instruction, f"{instruction} has no block to stand parallel to", "a parallel contact follows the contacts that it bridges, before any output or MPS", "5.1.5")
+            self.report(
+                instruction,
+                f"{instruction} has no block to stand parallel to",
+                "a parallel contact follows the contacts that it bridges, before any output or MPS",
+                "5.1.5",
+            )
         if self.bus:
             self.report(instruction, f"{instruction} has no LD before it", "begin the contacts of a rung with LD", "5.1.1")
             self.bus = False
@@ -111,7 +125,9 @@ class _Structure:
         own = self.blocks - level
         to_fork = own == 1 and (self.forked or self.kept) and instruction.mnemonic == "ANB"
         if (own < 2 and not to_fork) or self.used:
-            self.report(instruction, f"{instruction.mnemonic} needs two blocks", "each block begins with LD", instruction.definition.section)
+            self.report(
+                instruction, f"{instruction.mnemonic} needs two blocks", "each block begins with LD", instruction.definition.section
+            )
             return
         if not (to_fork and self.blocks == 1):
             self.blocks -= 1
@@ -122,19 +138,28 @@ class _Structure:
             return
         self._one_block(instruction)
         if len(self.kept) >= self.limits["stack"]:
-            self.report(instruction, f"more than {self.limits['stack']} MPS without MPP", "the flow stack is full; begin a new rung", "5.1.10")
+            self.report(
+                instruction, f"more than {self.limits['stack']} MPS without MPP", "the flow stack is full; begin a new rung", "5.1.10"
+            )
         self.kept.append(self.blocks)
         self.alone, self.used, self.forked = False, False, True
 
     def _one_block(self, instruction: Instruction) -> None:
         level = max(1, self._level())
         if self.blocks > level:
-            self.report(instruction, f"{self.blocks - level + 1} blocks are not joined before {instruction}", "join them with ANB or ORB", "5.1.8")
+            self.report(
+                instruction, f"{self.blocks - level + 1} blocks are not joined before {instruction}", "join them with ANB or ORB", "5.1.8"
+            )
             self.blocks = level
 
     def _mrd(self, instruction: Instruction) -> None:
         if not self.kept:
-            self.report(instruction, f"{instruction.mnemonic} without MPS", "MPS keeps the flow that MRD and MPP go on from", instruction.definition.section)
+            self.report(
+                instruction,
+                f"{instruction.mnemonic} without MPS",
+                "MPS keeps the flow that MRD and MPP go on from",
+                instruction.definition.section,
+            )
             return
         self._one_block(instruction)
         self.alone, self.used, self.branched = False, False, False
@@ -175,7 +200,9 @@ class _Structure:
         if mnemonic == "LBL":
             label = instruction.operands[0].value
             if label in self.labels:
-                self.report(instruction, f"the label {label} stands twice", f"it stands in line {self.labels[label][0].line} already", "6.1.3")
+                self.report(
+                    instruction, f"the label {label} stands twice", f"it stands in line {self.labels[label][0].line} already", "6.1.3"
+                )
             self.labels[label] = (instruction, self._loops())
         self._network(index, index + 1)
         self.start = index + 1
@@ -198,7 +225,9 @@ class _Structure:
             if current is not None and current.kind == "STL":
                 self._pop(index)
             elif current is not None:
-                self.report(instruction, f"{instruction} stands inside {current.kind}", f"close it with {_OPENERS[current.kind]} first", "5.2.1")
+                self.report(
+                    instruction, f"{instruction} stands inside {current.kind}", f"close it with {_OPENERS[current.kind]} first", "5.2.1"
+                )
             joins = index + 1 < len(self.unit.instructions) and self.unit.instructions[index + 1].mnemonic == "STL"
             if joins:
                 pass
@@ -229,12 +258,19 @@ class _Structure:
         elif any(r.kind == kind and (wanted is None or r.number == wanted) for r in self.regions):
             inner = self.regions[-1]
             name = f"{inner.kind} {inner.number}" if inner.kind == "MC" else f"STL {inner.steps[0]}" if inner.kind == "STL" else inner.kind
-            self.report(instruction, f"{instruction} crosses {name}", f"close {name} first; structures may be nested but not cross", section)
+            self.report(
+                instruction, f"{instruction} crosses {name}", f"close {name} first; structures may be nested but not cross", section
+            )
             while self.regions and not (self.regions[-1].kind == kind and (wanted is None or self.regions[-1].number == wanted)):
                 self._pop(index)
             self._pop(index)
         else:
-            self.report(instruction, f"{instruction} closes nothing", f"there is no open {kind}{f' {wanted}' if kind == 'MC' else ''} before it", section)
+            self.report(
+                instruction,
+                f"{instruction} closes nothing",
+                f"there is no open {kind}{f' {wanted}' if kind == 'MC' else ''} before it",
+                section,
+            )
 
     def _output(self, index: int, instruction: Instruction) -> None:
         mnemonic = instruction.mnemonic
@@ -249,7 +285,12 @@ class _Structure:
         elif mnemonic == "CALL" and self.unit.kind == "INTERRUPT":
             self.report(instruction, "an interrupt program cannot call a subroutine", "", "4.4.2")
         elif self._is_transition(instruction) and self.branched:
-            self.report(instruction, f"{instruction} stands behind a branch with a condition of its own", "write each transition with its whole condition, from LD on", "7.4.1(2)")
+            self.report(
+                instruction,
+                f"{instruction} stands behind a branch with a condition of its own",
+                "write each transition with its whole condition, from LD on",
+                "7.4.1(2)",
+            )
 
     def _is_transition(self, instruction: Instruction) -> bool:
         in_step = any(region.kind == "STL" for region in self.regions)
@@ -277,7 +318,12 @@ class _Structure:
     def _check_jumps(self) -> None:
         for instruction, label, loops in self.jumps:
             if label not in self.labels:
-                self.report(instruction, f"there is no LBL {label} in {self.unit.name}", "a label belongs to the unit in which it is jumped to", "6.1.4")
+                self.report(
+                    instruction,
+                    f"there is no LBL {label} in {self.unit.name}",
+                    "a label belongs to the unit in which it is jumped to",
+                    "6.1.4",
+                )
             elif self.labels[label][1] != loops[: len(self.labels[label][1])]:
                 self.report(instruction, f"{instruction} jumps into a FOR", "a jump may leave a loop, not enter it", "6.1.1")
 
@@ -309,7 +355,12 @@ class _Transitions:
                     self.report(instruction, f"{instruction} leads into another flow", f"a jump is written OUT {target}", "7.4.1(6)")
                 elif self._reached_another_way(sources, target.number, links):
                     self.report(instruction, f"{instruction} leaves out the steps between", f"a jump is written OUT {target}", "7.4.1(6)")
-            elif not back and target.number not in reached and self._section(target.number) == section and self._follows(target.number, sources, order):
+            elif (
+                not back
+                and target.number not in reached
+                and self._section(target.number) == section
+                and self._follows(target.number, sources, order)
+            ):
                 self.report(instruction, f"{instruction} leads to the adjacent step", f"a transition is written SET {target}", "7.4.1(6)")
 
     @staticmethod
@@ -347,7 +398,11 @@ class _Transitions:
             for network in region.nodes:
                 if isinstance(network, Network):
                     for instruction in self.unit.instructions[network.start : network.end]:
-                        if instruction.mnemonic in ("SET", "OUT") and isinstance(instruction.operands[0], Device) and instruction.operands[0].area == "S":
+                        if (
+                            instruction.mnemonic in ("SET", "OUT")
+                            and isinstance(instruction.operands[0], Device)
+                            and instruction.operands[0].area == "S"
+                        ):
                             yield region, instruction, instruction.operands[0], section
 
 

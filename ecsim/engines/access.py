@@ -135,7 +135,7 @@ class Access:
         """An expression for a list of `count` values from an operand on."""
         if isinstance(operand, Constant):
             return f"[{self.constant(kind, operand)}] * {count}"
-        low, high = self.limits(kind, operand.area)
+        _, high = self.limits(kind, operand.area)
         number = self.index(operand) if operand.index is not None else str(operand.number)
         if isinstance(operand, Bits):
             return f"span_bits({operand.area}, {number}, {4 * operand.digits}, {count}, {kind.signed and 4 * operand.digits == kind.bits})"
@@ -147,7 +147,7 @@ class Access:
 
     def store_span(self, kind: DataType, operand: Device | Bits, text: str, resets: bool) -> list[str]:
         """Statements that write a list of values, each in the signed range of `kind`'s width, from an operand on."""
-        low, high = self.limits(kind, operand.area)
+        _, high = self.limits(kind, operand.area)
         number = self.index(operand) if operand.index is not None else str(operand.number)
         if isinstance(operand, Bits):
             return [f"put_span_bits({operand.area}, {number}, {4 * operand.digits}, {text})"]

@@ -289,7 +289,11 @@ class _Rung:
     def repeat(self, count: Operand) -> None:
         load = self.c.access.load(INT, count)
         flow = self._bus().text
-        self.lines += self.c.guard_faults([f"turns = {load}"], (count,)) if not self.c.access.can_fault(count) else ["turns = 0", *self.c.guard_faults([f"turns = {load}"], (count,))]
+        self.lines += (
+            self.c.guard_faults([f"turns = {load}"], (count,))
+            if not self.c.access.can_fault(count)
+            else ["turns = 0", *self.c.guard_faults([f"turns = {load}"], (count,))]
+        )
         self.opened = "turns" if flow == "True" else f"turns if {flow} else 0"
 
     def label(self, number: int) -> None:
@@ -308,7 +312,13 @@ class _Rung:
         callee = self.c.program.unit(name)
         enter = self.c.enter_lines(callee, arguments)
         leave = self.c.exit_lines(callee, arguments, self.unit)
-        lines = [*enter, f"left = {self.c.unit_names[name.upper()]}()", *leave, "if left == 2: return 2", *([f"if {self.c.fault_flag}: executed()"] if self.c.can_fault else [])]
+        lines = [
+            *enter,
+            f"left = {self.c.unit_names[name.upper()]}()",
+            *leave,
+            "if left == 2: return 2",
+            *([f"if {self.c.fault_flag}: executed()"] if self.c.can_fault else []),
+        ]
         self._when(self.c.guard_faults(lines, arguments))
 
 
@@ -357,7 +367,10 @@ class _FlatUnit:
             self.c.function(f"{name}_{place}", text.split("\n"))
         parts = ", ".join(f"{name}_{place}" for place in range(last + 1))
         self.c.out.append(f"{name}_parts = ({parts},)")
-        self.c.function(name, ["place = 0", "while place >= 0:", f"{INDENT}place = {name}_parts[place]()", f"return {HALTED} if place == -{HALTED} else 0"])
+        self.c.function(
+            name,
+            ["place = 0", "while place >= 0:", f"{INDENT}place = {name}_parts[place]()", f"return {HALTED} if place == -{HALTED} else 0"],
+        )
 
     def _mark(self, name: str) -> None:
         """A new segment begins here, under a name that `@name@` stands for."""

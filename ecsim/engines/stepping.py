@@ -245,7 +245,11 @@ class _Builder(Writer):
         if join == "LD":
             body = [*lines, *(["STACK.append(flow)"] if nested else []), f"return {text}"]
         else:
-            body = [*lines, f"return flow {join.lower()} {text}"] if "(" in text or " " not in text else [*lines, f"return flow {join.lower()} ({text})"]
+            body = (
+                [*lines, f"return flow {join.lower()} {text}"]
+                if "(" in text or " " not in text
+                else [*lines, f"return flow {join.lower()} ({text})"]
+            )
         op = self._op(body)
         op.join, op.nested = join, nested
         self._define("", [*lines, f"return {text}"], lambda function: setattr(op, "closed", function))
@@ -258,7 +262,7 @@ class _Builder(Writer):
         if pattern.expression:
             self._op([f"return {pattern.fill({'flow': 'flow'})}"])
             return
-        lines, returns = self.always(instruction, "flow", "flow")
+        lines, _ = self.always(instruction, "flow", "flow")
         self._op([*lines, "return flow"])
 
     def _targets(self) -> tuple:
@@ -270,7 +274,15 @@ class _Builder(Writer):
         for spec, operand in self.targets(instruction):
             index = None if operand.index is None else (operand.index_area, operand.index)
             if isinstance(operand, Bits):
-                found.append((operand.area, operand.area, operand.number, index, 4 * operand.digits * (spec.span if isinstance(spec.span, int) else 1)))
+                found.append(
+                    (
+                        operand.area,
+                        operand.area,
+                        operand.number,
+                        index,
+                        4 * operand.digits * (spec.span if isinstance(spec.span, int) else 1),
+                    )
+                )
                 continue
             count = self._length(instruction, spec)
             both = operand.area in ("T", "C") and (spec.kind in ("TIMER", "COUNTER", "DCOUNTER") or definition.resets)
@@ -309,7 +321,12 @@ class _Builder(Writer):
         self._when(self.transfer_lines(target))
 
     def combine(self, word: str) -> None:
-        self._op([f"return STACK.pop() {word} flow" if word == "or" else "first = STACK.pop()", *([] if word == "or" else ["return first and flow"])])
+        self._op(
+            [
+                f"return STACK.pop() {word} flow" if word == "or" else "first = STACK.pop()",
+                *([] if word == "or" else ["return first and flow"]),
+            ]
+        )
 
     def push(self) -> None:
         self._op(["KEPT.append(flow)", "return flow"])
@@ -331,7 +348,11 @@ class _Builder(Writer):
         self.opening, self.done = self.instruction.position, True
         self.turns: list = [None]
         turns = self.turns
-        self._define("", [*self.guard_faults([f"return {self.access.load(INT, count)}"], (count,)), "return 0"], lambda function: turns.__setitem__(0, function))
+        self._define(
+            "",
+            [*self.guard_faults([f"return {self.access.load(INT, count)}"], (count,)), "return 0"],
+            lambda function: turns.__setitem__(0, function),
+        )
 
     def close(self) -> None:
         pass
@@ -423,7 +444,7 @@ class _Builder(Writer):
         first, *others = [step.number for step in region.steps]
 
         def enter(flow) -> int:
-            if active[first] and all([active[number] for number in others]):
+            if active[first] and all(active[number] for number in others):
                 was[slot] = True
                 return body
             if was[slot]:

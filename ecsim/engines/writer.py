@@ -184,12 +184,17 @@ class Writer:
         flags = [flag for flag in instruction.definition.flags if flag not in instruction.definition.given]
         relay = {flag: "{}[{}]".format(*self.model.flag(flag)) for flag in flags}
         lines = [f"{relay['zero']} = {name} == 0"] if "zero" in relay else []
-        out = [(relay[flag], test) for flag, test in (("carry", f"{name} > {kind.high}"), ("borrow", f"{name} < {kind.low}")) if flag in relay]
+        out = [
+            (relay[flag], test) for flag, test in (("carry", f"{name} > {kind.high}"), ("borrow", f"{name} < {kind.low}")) if flag in relay
+        ]
         if out and kind is not REAL:
             lines += [f"if {kind.low} <= {name} <= {kind.high}:", INDENT + " = ".join(target for target, _ in out) + " = False", "else:"]
             lines += [f"{INDENT}{target} = {test}" for target, test in out]
         elif out:
-            lines += [f"{target} = {name} in (float('inf'), float('-inf'))" if test.endswith(str(kind.high)) else f"{target} = False" for target, test in out]
+            lines += [
+                f"{target} = {name} in (float('inf'), float('-inf'))" if test.endswith(str(kind.high)) else f"{target} = False"
+                for target, test in out
+            ]
         return lines
 
     # -- always and command ---------------------------------------------------------------------------------------
@@ -204,12 +209,20 @@ class Writer:
                 fields["state_was"] = f"E[{instruction.slot}]"
                 continue
             spec, operand = next(operands)
-            fields |= self._unit_fields(name, spec, operand) if spec.kind in ("TIMER", "COUNTER", "DCOUNTER") else {name: self.access.load(spec.type, operand)}
+            fields |= (
+                self._unit_fields(name, spec, operand)
+                if spec.kind in ("TIMER", "COUNTER", "DCOUNTER")
+                else {name: self.access.load(spec.type, operand)}
+            )
         return fields
 
     def _unit_fields(self, name: str, spec: OperandSpec, device: Device) -> dict[str, str]:
         number = device.number
-        fields = {f"{name}_number": str(number), f"{name}_value": f"{device.area}[{number}]", f"{name}_contact": f"{device.area}B[{number}]"}
+        fields = {
+            f"{name}_number": str(number),
+            f"{name}_value": f"{device.area}[{number}]",
+            f"{name}_contact": f"{device.area}B[{number}]",
+        }
         if spec.kind == "TIMER":
             fields |= {f"{name}_due": f"DUE[{number}]", f"{name}_rest": f"REST[{number}]", f"{name}_now": "CLOCK[0]"}
             fields[f"{name}_base"] = str(self.model.timer_base_us(number))
@@ -245,7 +258,13 @@ class Writer:
 
     def command(self, instruction: Instruction) -> list[str]:
         """The statements of a command whose flow is ON."""
-        arguments = ["machine", *(self._load(instruction, spec, operand) for spec, operand in zip(instruction.definition.operands, instruction.operands, strict=True))]
+        arguments = [
+            "machine",
+            *(
+                self._load(instruction, spec, operand)
+                for spec, operand in zip(instruction.definition.operands, instruction.operands, strict=True)
+            ),
+        ]
         return self.guarded(instruction, [f"{self._function(instruction)}({', '.join(arguments)})"])
 
     # -- coils, steps, calls --------------------------------------------------------------------------------------
@@ -320,4 +339,8 @@ class Writer:
     @staticmethod
     def targets(instruction: Instruction) -> list[tuple[OperandSpec, Device | Bits]]:
         """The operands that an instruction writes."""
-        return [(spec, operand) for spec, operand in zip(instruction.definition.operands, instruction.operands, strict=True) if spec.written and isinstance(operand, (Device, Bits))]
+        return [
+            (spec, operand)
+            for spec, operand in zip(instruction.definition.operands, instruction.operands, strict=True)
+            if spec.written and isinstance(operand, (Device, Bits))
+        ]

@@ -1,6 +1,6 @@
 """5.1: contacts, coils and the logic of a rung."""
 
-from .define import always, contact, emitted, value
+from .define import always, contact, emitted
 
 for _join, _open, _closed, _at in (("LD", "LD", "LDI", 1), ("AND", "AND", "ANI", 3), ("OR", "OR", "ORI", 5)):
 

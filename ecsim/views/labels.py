@@ -46,6 +46,11 @@ class Labels:
             return Label(self.locals.get(address) or self.names.get(address, ""), address)
         return Label("", address)
 
+    def contact(self, word: Word) -> Label:
+        """The label of a contact of one bit; of a bit in a word "D0.5"."""
+        label = self.of(word, 0)
+        return Label(label.name, ".".join((label.address, *map(str, word.operands[1:]))))
+
     def named(self, device: Device) -> Label:
         """The label of a device that stands in no instruction."""
         return Label(self.names.get(str(device), ""), str(device))
@@ -96,9 +101,7 @@ def figure(value: int | float | None) -> str:
     """A value as it is shown: thousands with a comma, a true minus, seven digits of a REAL; a dash where there is none."""
     if value is None:
         return "–"
-    if isinstance(value, int):
-        return f"{value:,}".replace("-", "−") if value.__class__ is int else str(int(value))
-    return f"{value:.7g}".replace("-", "−")
+    return f"{value:{',' if isinstance(value, int) else '.7g'}}".replace("-", "−")
 
 
 def constant_value(operand: Operand) -> int | float | None:
@@ -114,7 +117,7 @@ def sign(word: Word, pretty: bool = True) -> str:
 
 def compares(word: Word) -> bool:
     """Whether a contact compares two values."""
-    return len(word.operands) > 1
+    return not word.mnemonic.isalnum()
 
 
 def contact_words(word: Word, labels: Labels) -> str:
@@ -122,7 +125,7 @@ def contact_words(word: Word, labels: Labels) -> str:
     if compares(word):
         return f"{_spoken(labels.of(word, 0))} {sign(word)} {_spoken(labels.of(word, 1))}"
     what = "normally closed" if inverted(word) else "normally open"
-    return f"{_spoken(labels.of(word, 0))}, {what}"
+    return f"{_spoken(labels.contact(word))}, {what}"
 
 
 def inverted(word: Word) -> bool:
