@@ -10,7 +10,7 @@ from pathlib import Path
 from .assembler import assemble
 from .errors import EcsimError, ProgramError
 from .models import MODELS
-from .project import read_project, settings
+from .project import read_project
 from .scenario import load_cases, run_case
 
 
@@ -63,10 +63,9 @@ def _cases(options: argparse.Namespace) -> int:
 
 
 def _check(options: argparse.Namespace) -> int:
-    text, name = read_project(options.program)
-    found = settings(options.program) if options.program.is_dir() else {}
+    text, name, chosen = read_project(options.program)
     try:
-        program = assemble(text, options.model or found.get("model", "EC20"), name)
+        program = assemble(text, options.model or chosen.get("model", "EC20"), name)
     except ProgramError as error:
         for problem in error.problems:
             print(problem)

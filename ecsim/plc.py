@@ -120,7 +120,9 @@ class Plc:
         A program that does not compile raises ProgramError and leaves the loaded one as it is, running if it ran.
         """
         if not isinstance(program, Program):
-            text, name = read_project(program)
+            text, name, chosen = read_project(program)
+            if chosen.get("model", self.model.name) != self.model.name:
+                raise EcsimError(f"{name} is a project for {chosen['model']}, this is an {self.model.name}; make a Plc({chosen['model']!r})")
             program = assemble(text, self.model, name)
         if program.model.name != self.model.name:
             raise EcsimError(

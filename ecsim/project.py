@@ -6,16 +6,17 @@ from pathlib import Path
 from .errors import EcsimError
 
 
-def read_project(program: str | Path) -> tuple[str, str]:
-    """The instruction list and its name. A one-line string that ends in .il, or names a folder, is a path."""
+def read_project(program: str | Path) -> tuple[str, str, dict]:
+    """The instruction list, its name and the project's settings. A one-line string that ends in .il, or names a folder, is a path."""
     if isinstance(program, Path) or _is_path(program):
         path = Path(program)
         if path.is_dir():
-            return _folder(path), path.name
-        return _text(path), path.name
+            chosen = settings(path)
+            return _folder(path), path.name, chosen
+        return _text(path), path.name, {}
     if not isinstance(program, str):
         raise EcsimError(f"a program is a text, a path or a Program, not {type(program).__name__}")
-    return program, ""
+    return program, "", {}
 
 
 def _is_path(text: object) -> bool:
@@ -36,7 +37,6 @@ def _text(path: Path) -> str:
 
 
 def _folder(folder: Path) -> str:
-    settings(folder)
     files = sorted(folder.glob("*.il"))
     if not files:
         raise EcsimError(f"{folder} holds no .il file; put the program into {folder / 'main.il'}")
