@@ -1,5 +1,6 @@
 """The six data types of 3.3.1 and how numbers fit into 16-bit registers."""
 
+import math
 import struct
 from dataclasses import dataclass
 
@@ -69,7 +70,7 @@ def single(value: float) -> float:
     try:
         return _FLOAT.unpack(_FLOAT.pack(value))[0]
     except OverflowError:
-        return float("inf") if value > 0 else float("-inf")
+        return math.copysign(math.inf, value)
 
 
 def real_from_words(high: int, low: int) -> float:
@@ -78,5 +79,8 @@ def real_from_words(high: int, low: int) -> float:
 
 
 def words_from_real(value: float) -> tuple[int, int]:
-    """`value` rounded to single precision as (high word, low word)."""
-    return _PAIR.unpack(_FLOAT.pack(single(value)))
+    """`value` rounded to single precision as (high word, low word); an infinity beyond the largest single."""
+    try:
+        return _PAIR.unpack(_FLOAT.pack(value))
+    except OverflowError:
+        return _PAIR.unpack(_FLOAT.pack(math.copysign(math.inf, value)))

@@ -1,10 +1,18 @@
 """Operands as Python source: how a device is read and written in generated code, and the functions that code calls."""
 
+import sys
+from array import array
+from struct import Struct
+
 from ..devices import Bits, Constant, Device, Operand
 from ..errors import OPERAND, RANGE, Fault
 from ..memory import Memory
 from ..models import Model
 from ..values import BOOL, REAL, DataType, join, real_from_words, signed16, single, split, words_from_real
+
+# REAL[0] and HALF[0], HALF[1] are one piece of scratch memory, seen as a single and as two registers: the fastest way between the two.
+ROUNDED = "REAL[0]"
+_HIGH, _LOW = ("HALF[1]", "HALF[0]") if sys.byteorder == "little" else ("HALF[0]", "HALF[1]")
 
 
 class Access:
@@ -66,10 +74,18 @@ class Access:
     def _pair(self, first: str, second: str) -> tuple[str, str]:
         return (first, second) if self.model.high_word_first else (second, first)
 
+    def fetch(self, kind: DataType, operand: Operand, name: str) -> list[str]:
+        """Statements that give `name` the value of an operand; for a REAL faster than `load`."""
+        if kind is not REAL or not isinstance(operand, Device) or operand.index is not None:
+            return [f"{name} = {self.load(kind, operand)}"]
+        first, second = self._pair(_HIGH, _LOW)
+        area, number = operand.area, operand.number
+        return [f"{first} = {area}[{number}]", f"{second} = {area}[{number + 1}]", f"{name} = {ROUNDED}"]
+
     @staticmethod
     def _wide(kind: DataType, high: str, low: str) -> str:
         if kind is REAL:
-            return f"real_from_words({high}, {low})"
+            return f"real_of(halves({high}, {low}))[0]"
         if kind.signed:
             return f"({high} << 16 | {low} & 65535)"
         return f"(({high} & 65535) << 16 | {low} & 65535)"
@@ -108,8 +124,16 @@ class Access:
             return [f"{self.bits(area)}[{number}] = {text}"]
         if kind.words == 1 or area in ("T", "C"):
             return [f"{area}[{number}] = {text}"]
-        first, second = self._pair(f"{area}[{number}]", f"{area}[{number + 1}]")
-        return [f"{first}, {second} = {'words_from_real' if kind is REAL else 'split'}({text})"]
+        high, low = self._pair(f"{area}[{number}]", f"{area}[{number + 1}]")
+        if kind is REAL:
+            return [*([] if text == ROUNDED else [f"{ROUNDED} = {text}"]), f"{high} = {_HIGH}", f"{low} = {_LOW}"]
+        name = text if text.isidentifier() else "wide"
+        return [*([] if text == name else [f"{name} = {text}"]), f"{high} = {name} >> 16", f"{low} = ({name} & 65535 ^ 32768) - 32768"]
+
+    @staticmethod
+    def round(name: str) -> list[str]:
+        """Statements that round a float to a single, beyond the largest one an infinity; afterwards ROUNDED is the result too."""
+        return [f"{ROUNDED} = {name}", f"{name} = {ROUNDED}"]
 
     def _store_indexed(self, kind: DataType, device: Device, text: str) -> list[str]:
         low, high = self.limits(kind, device.area)
@@ -164,6 +188,7 @@ def functions(memory: Memory) -> dict[str, object]:
     """What generated code calls to reach memory where a plain list access is not enough; a bad number raises Fault(65)."""
     model, lists = memory.model, memory.lists
     first = 0 if model.high_word_first else 1
+    half = array("h", (0, 0))
 
     def at(values, number, low, high):
         if low <= number < high:
@@ -279,12 +304,14 @@ def functions(memory: Memory) -> dict[str, object]:
         return [((value + 0x8000_0000) & 0xFFFF_FFFF) - 0x8000_0000 for value in values]
 
     local = dict(locals())
-    for name in ("memory", "model", "lists", "first"):
+    for name in ("memory", "model", "lists", "first", "half"):
         del local[name]
     return local | {
         "Fault": Fault,
-        "real_from_words": real_from_words,
-        "words_from_real": words_from_real,
+        "HALF": half,
+        "REAL": memoryview(half).cast("B").cast("f"),
+        "halves": Struct(">hh").pack,
+        "real_of": Struct(">f").unpack,
         "split": split,
         "READ_ONLY_BITS": model.read_only_relays,
         "READ_ONLY_WORDS": model.read_only_registers,
