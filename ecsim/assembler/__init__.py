@@ -55,7 +55,7 @@ class _Assembler:
             for index, instruction in enumerate(unit.instructions):
                 instruction.position, instruction.step = position, step
                 instruction.steps = self._steps(instruction, index in stepping)
-                if "state" in instruction.definition.function.__code__.co_varnames:
+                if instruction.definition.keeps:
                     instruction.slot, slots = slots, slots + 1
                 position, step = position + 1, step + instruction.steps
             for region in _regions(unit.nodes):

@@ -179,10 +179,10 @@ class _Rung:
         form, definition = instruction.definition.form, instruction.definition
         if form == "contact":
             self._contact(instruction)
-        elif form == "value":
+        elif "flow" in definition.taken and (definition.assigns or definition.after):
+            self.lines += self.c.value(instruction, self._told().text)
+        elif form in ("value", "command"):
             self._when(self.c.value(instruction))
-        elif form == "command":
-            self._when(self.c.command(instruction))
         elif form == "always":
             self._always(instruction)
         else:
@@ -221,6 +221,13 @@ class _Rung:
         if self.again and not flow.named:
             flow = self.flow = self._name(flow.text)
         return flow.text
+
+    def _told(self) -> Flow:
+        """The flow under a name, for an instruction that is told of it."""
+        flow = self._bus()
+        if not flow.named:
+            flow = self.flow = self._name(flow.text)
+        return flow
 
     def _when(self, lines: list[str]) -> None:
         flow = self._used()
@@ -266,10 +273,7 @@ class _Rung:
         self.flow = self._cut(_joined(word, left, self.flow))
 
     def push(self) -> None:
-        flow = self._bus()
-        if not flow.named:
-            flow = self.flow = self._name(flow.text)
-        self.kept.append(flow)
+        self.kept.append(self._told())
 
     def read(self) -> None:
         self.flow = self.kept[-1]

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 from ..assembler.program import Instruction, Network, Program, Region, Unit
 from ..devices import Bits, Device, Operand, number_text
+from ..instructions.signature import OperandSpec
 from ..memory import Memory
 from ..values import BOOL, INT
 from .trace import Trace, Write
@@ -209,10 +210,10 @@ class _Builder(Writer):
         definition = instruction.definition
         if definition.form == "contact":
             self._contact(instruction)
-        elif definition.form == "value":
+        elif "flow" in definition.taken and (definition.assigns or definition.after):
+            self._op([*self.value(instruction, "flow"), "return flow"])
+        elif definition.form in ("value", "command"):
             self._when(self.value(instruction))
-        elif definition.form == "command":
-            self._when(self.command(instruction))
         elif definition.form == "always":
             self._always(instruction)
         else:
@@ -274,17 +275,9 @@ class _Builder(Writer):
         for spec, operand in self.targets(instruction):
             index = None if operand.index is None else (operand.index_area, operand.index)
             if isinstance(operand, Bits):
-                found.append(
-                    (
-                        operand.area,
-                        operand.area,
-                        operand.number,
-                        index,
-                        4 * operand.digits * (spec.span if isinstance(spec.span, int) else 1),
-                    )
-                )
+                found.append((operand.area, operand.area, operand.number, index, self._length(instruction, spec, 4 * operand.digits)))
                 continue
-            count = self._length(instruction, spec)
+            count = self._length(instruction, spec, max(1, spec.type.words))
             both = operand.area in ("T", "C") and (spec.kind in ("TIMER", "COUNTER", "DCOUNTER") or definition.resets)
             if both or spec.type is not BOOL:
                 found.append((operand.area, operand.area, operand.number, index, count))
@@ -295,19 +288,14 @@ class _Builder(Writer):
             found += [("S", "S", step.number, None, 1) for step in self.region.steps]
         return tuple(found)
 
-    def _length(self, instruction: Instruction, spec) -> int | Callable[[], int]:
-        unit = max(1, spec.type.words)
-        if spec.span is None:
-            return unit
-        if isinstance(spec.span, int):
-            return spec.span * unit
-        for other, operand in zip(instruction.definition.operands, instruction.operands, strict=True):
-            if other.name == spec.span:
-                if isinstance(operand, Device) and operand.index is None:
-                    return lambda: max(0, min(self.engine.memory.get(operand, other.type), 8000)) * unit
-                value = self.constant_value(operand)
-                return (value or 0) * unit
-        return unit
+    def _length(self, instruction: Instruction, spec: OperandSpec, unit: int) -> int | Callable[[], int]:
+        """How many list elements an operand covers whose values take `unit` each."""
+        if spec.span is None or isinstance(spec.span, int):
+            return (spec.span or 1) * unit
+        counts: list[Callable[[], int]] = []
+        count = self._count(instruction, spec)
+        self._define("", ["try:", *indented([f"return {count}"]), "except Fault:", *indented(["return 0"])], counts.append)
+        return lambda: max(0, min(counts[0](), 8000)) * unit
 
     # -- verbs --------------------------------------------------------------------------------------------------
 

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 
 from ..assembler.program import Instruction, Network, Program, Region, Unit, Variable
 from ..devices import Bits, Constant, Device, Operand
-from ..errors import EcsimError
+from ..errors import OPERAND
 from ..instructions.signature import OperandSpec
 from ..values import BOOL, REAL
 from .access import Access
@@ -52,21 +52,31 @@ class Writer:
 
     def _may_fault(self, instruction: Instruction) -> bool:
         definition = instruction.definition
-        if any(self.access.can_fault(operand) for operand in instruction.operands):
+        if definition.faults or any(self.access.can_fault(operand) for operand in instruction.operands):
             return True
-        if definition.form == "command":
-            return bool(definition.faults)
-        if definition.form != "value":
+        pairs = zip(definition.operands, instruction.operands, strict=False)  # a CALL has the operands of its subroutine
+        if any(self._checked(spec, operand) for spec, operand in pairs):
+            return True
+        if definition.form not in ("value", "command"):
             return False
-        return template(definition.function, "value").text is None or any(spec.span for spec in definition.operands)
+        called = definition.form == "value" and template(definition.function, "value").text is None
+        return called or any(spec.span for spec in definition.operands)
 
-    def guarded(self, instruction: Instruction, lines: list[str]) -> list[str]:
-        """The lines of an application instruction with what an execution error does, and what a correct execution does."""
+    @staticmethod
+    def _checked(spec: OperandSpec, operand: Operand) -> bool:
+        """Whether the operand's value is held against its range when the instruction is executed."""
+        return spec.range is not None and spec.plain and spec.read and not isinstance(operand, Constant)
+
+    def guarded(self, instruction: Instruction, lines: list[str], after: tuple[str, ...] = ()) -> list[str]:
+        """The lines of an application instruction with what an execution error does, and what a correct execution does.
+
+        `after` is done behind an execution error besides.
+        """
         application = instruction.definition.application
         if self.can_fault and application:
             lines = [*lines, f"if {self.fault_flag}: executed()"]
         if self._may_fault(instruction):
-            lines = ["try:", *indented(lines), "except Fault as error:", f"{INDENT}fault(error.code)"]
+            lines = ["try:", *indented(lines), "except Fault as error:", *indented(["fault(error.code)", *after])]
         return lines
 
     # -- operands -----------------------------------------------------------------------------------------------
@@ -75,17 +85,38 @@ class Writer:
     def _simple(text: str) -> bool:
         return text.count("[") <= 1 and " " not in text
 
-    def _loads(self, instruction: Instruction, names: list[str], pattern: Template) -> tuple[list[str], dict[str, str]]:
-        """Statements that fetch what stands more than once, and the fields of the operands that are read."""
+    def _loads(self, instruction: Instruction, pattern: Template, flow: str) -> tuple[list[str], dict[str, str]]:
+        """Statements that fetch what stands more than once and hold values against their ranges, and a field for each parameter."""
         lines, fields = [], {}
-        specs = [(spec, operand) for spec, operand in zip(instruction.definition.operands, instruction.operands, strict=True) if spec.read]
-        for name, (spec, operand) in zip(names, specs, strict=True):
+        definition = instruction.definition
+        operands = {spec.name: (spec, operand) for spec, operand in zip(definition.operands, instruction.operands, strict=True)}
+        for name, word in zip(self._parameters(instruction), definition.taken, strict=True):
+            if word not in operands:
+                fields[name] = self._special(instruction, word, flow)
+                continue
+            spec, operand = operands[word]
             text = self._load(instruction, spec, operand)
-            if pattern.uses.get(name, 1) > 1 and not self._simple(text):
+            checked = self._checked(spec, operand)
+            if checked or (pattern.uses.get(name, 1) > 1 and not self._simple(text)):
                 lines.append(f"a_{name} = {text}")
                 text = f"a_{name}"
+            if checked:
+                lines.append(self._range_check(spec, text, flow if definition.after else ""))
             fields[name] = text
         return lines, fields
+
+    def _special(self, instruction: Instruction, word: str, flow: str) -> str:
+        """What a function gets that is no operand."""
+        known = {"flow": flow, "machine": "machine", "now": "CLOCK[0]", "state": f"E[{instruction.slot}]"}
+        return known.get(word) or "{}[{}]".format(*self.model.flag(word))
+
+    @staticmethod
+    def _range_check(spec: OperandSpec, text: str, flow: str) -> str:
+        """The statement that makes a value outside its range error 64; a command that is called without flow takes any value."""
+        low, high = spec.range
+        above = f" <= {high}" if high < spec.type.high else ""
+        test = f"{low} <= {text}{above}" if low > spec.type.low else f"{text}{above}"
+        return f"if {f'{flow} and ' if flow else ''}not {test}: raise Fault({OPERAND})"
 
     def _load(self, instruction: Instruction, spec: OperandSpec, operand: Operand) -> str:
         if spec.span is None:
@@ -93,18 +124,24 @@ class Writer:
         return self.access.load_span(spec.type, operand, self._count(instruction, spec))
 
     def _count(self, instruction: Instruction, spec: OperandSpec) -> str:
-        """The length of a span: a number, or the value of another operand."""
-        if isinstance(spec.span, int):
-            return str(spec.span)
-        for other, operand in zip(instruction.definition.operands, instruction.operands, strict=True):
-            if other.name == spec.span:
-                return self.access.load(other.type, operand)
-        raise EcsimError(f"{instruction.mnemonic}: the span of {spec.name} names no operand")
+        """The length of a span as an expression."""
+        loads = {
+            other.name: self.access.load(other.type, operand)
+            for other, operand in zip(instruction.definition.operands, instruction.operands, strict=True)
+            if other.span is None and other.plain
+        }
+
+        def known(match: re.Match) -> str:
+            word = match[0]
+            return loads.get(word) or ("{}[{}]".format(*self.model.flag(word)) if word in self.model.relays else word)
+
+        return re.sub(r"[A-Za-z]\w*", known, str(spec.span).strip("{}"))
 
     def _function(self, instruction: Instruction) -> str:
         function = instruction.definition.function
         name = f"{function.__module__.rpartition('.')[2]}_{function.__name__}"
-        self.globals[name] = function
+        while self.globals.setdefault(name, function) is not function:  # functions made in a loop share their name
+            name += "_"
         return name
 
     @staticmethod
@@ -117,7 +154,7 @@ class Writer:
     def contact(self, instruction: Instruction) -> tuple[list[str], str]:
         """Statements to run first, and the expression that is true while the contact is closed."""
         pattern = template(instruction.definition.function, "contact")
-        lines, fields = self._loads(instruction, self._parameters(instruction), pattern)
+        lines, fields = self._loads(instruction, pattern, "")
         self.globals.update(pattern.globals)
         text = pattern.fill(fields)
         if not (self.can_fault and instruction.definition.application):
@@ -130,14 +167,20 @@ class Writer:
 
     # -- values -------------------------------------------------------------------------------------------------
 
-    def value(self, instruction: Instruction) -> list[str]:
-        """The statements of a value instruction whose flow is ON."""
+    def value(self, instruction: Instruction, flow: str = "True") -> list[str]:
+        """The statements of an instruction that gives values; `flow` is the flow for one that is told of it."""
+        definition = instruction.definition
+        after = (f"if not {flow}: E[{instruction.slot}] = False",) if definition.after else ()
+        lines = self.guarded(instruction, self.result_lines(instruction, flow), after)
+        return [f"if {flow} or E[{instruction.slot}]:", *indented(lines)] if definition.after else lines
+
+    def result_lines(self, instruction: Instruction, flow: str) -> list[str]:
+        """Load, compute, store, without what an execution error does."""
         definition = instruction.definition
         pattern = template(definition.function, "value")
-        names = self._parameters(instruction)
-        lines, fields = self._loads(instruction, names, pattern)
-        if pattern.text is None:
-            result = f"{self._function(instruction)}({', '.join(fields[name] for name in names)})"
+        lines, fields = self._loads(instruction, pattern, flow)
+        if pattern.text is None or definition.form == "command":
+            result = f"{self._function(instruction)}({', '.join(fields.values())})"
         else:
             self.globals.update(pattern.globals)
             result = pattern.fill(fields)
@@ -145,12 +188,14 @@ class Writer:
         if len(targets) == 1 and not definition.given:
             lines += self._one_result(instruction, *targets[0], result, pattern)
         else:
-            names = [f"v{place}" for place in range(len(targets))] + [f"f_{flag}" for flag in definition.given]
-            lines.append(f"{', '.join(names)}{',' if len(names) == 1 else ''} = {result}")
+            names = [f"v{place}" for place in range(len(targets))] + [f"f_{word}" for word in definition.given]
+            lines.append(f"{', '.join(names)}{',' if len(names) == 1 else ''} = {result}" if names else result)
             for place, (spec, operand) in enumerate(targets):
                 lines += self._store_result(instruction, spec, operand, f"v{place}")
-            lines += ["{}[{}] = {}".format(*self.model.flag(flag), f"f_{flag}") for flag in definition.given]
-        return self.guarded(instruction, lines)
+            lines += [f"{self._special(instruction, word, flow)} = f_{word}" for word in definition.given]
+        if definition.after and "state" not in definition.given:
+            lines.append(f"E[{instruction.slot}] = {flow}")
+        return lines
 
     def _one_result(self, instruction: Instruction, spec: OperandSpec, operand, result: str, pattern: Template) -> list[str]:
         if pattern.passes and spec.span is None and self._same_width(instruction, spec) and not instruction.definition.flags:
@@ -256,17 +301,6 @@ class Writer:
         first, last = self.model.fast_timers
         return any(isinstance(o, Device) and o.area == "T" and first <= o.number <= last for o in instruction.operands[:1])
 
-    def command(self, instruction: Instruction) -> list[str]:
-        """The statements of a command whose flow is ON."""
-        arguments = [
-            "machine",
-            *(
-                self._load(instruction, spec, operand)
-                for spec, operand in zip(instruction.definition.operands, instruction.operands, strict=True)
-            ),
-        ]
-        return self.guarded(instruction, [f"{self._function(instruction)}({', '.join(arguments)})"])
-
     # -- coils, steps, calls --------------------------------------------------------------------------------------
 
     @property
@@ -283,17 +317,23 @@ class Writer:
 
     def clear_lines(self, unit: Unit, region: Region) -> list[str]:
         """What is cleared when a region is left: the destinations of OUT, TON, TOF ... inside (5.2.1, 5.3.1)."""
-        lines: list[str] = []
+        blocks: dict[tuple[str, ...], None] = {}  # each once, in order
         for instruction in unit.instructions[region.opening + 1 : region.closing]:
-            definition = instruction.definition
-            if not definition.cleared:
-                continue
-            if region.kind == "STL" and definition.transition_steps and instruction.operands[0].area == "S":
-                continue
-            for spec, operand in zip(definition.operands, instruction.operands, strict=True):
-                if spec.written:
-                    lines += self.access.reset(operand) if definition.form == "always" else self.access.store(BOOL, operand, "False")
-        return list(dict.fromkeys(lines))
+            handed_on = instruction.definition.transition_steps and instruction.operands[0].area == "S"
+            if instruction.definition.cleared and not (region.kind == "STL" and handed_on):
+                blocks |= dict.fromkeys(self._erasures(instruction))
+        return [line for block in blocks for line in block]
+
+    def _erasures(self, instruction: Instruction) -> list[tuple[str, ...]]:
+        """The statements that clear each destination of one instruction."""
+        definition = instruction.definition
+        if definition.assigns:  # the bit of a word: executed without flow; one that cannot be reached needs no clearing
+            lines = self.result_lines(instruction, "False")
+            return [("try:", *indented(lines), "except Fault:", f"{INDENT}pass") if self._may_fault(instruction) else (*lines,)]
+        devices = [operand for spec, operand in zip(definition.operands, instruction.operands, strict=True) if spec.written]
+        if definition.form == "always":
+            return [(*self.access.reset(device),) for device in devices]
+        return [(*self.access.store(BOOL, device, "False"),) for device in devices]
 
     def enter_lines(self, callee: Unit, arguments: tuple[Operand, ...]) -> list[str]:
         """A call's beginning: the caller's LM and V put aside, the callee's cleared and loaded (3.1.12, 4.4.3)."""

@@ -5,7 +5,7 @@ Five forms, told apart by what the function is given:
     contact   operand values -> bool                       joined to the power flow
     value     operand values -> new value(s)               while the flow is ON
     always    the flow, a timer or counter, values         in every scan
-    command   a hardware unit, what the flow does, values  while the flow is ON and once after
+    command   the machine or the flow, values              while the flow is ON; with the flow once more after it
     emitted   the code being written, the operands         the structure of the program
 
 The functions of the first three forms are pure text to the engines as well: `engines/template.py` reads their bodies,
@@ -33,7 +33,8 @@ class Definition:
     function: Callable
     join: str | None = None  # contacts: "LD", "AND" or "OR"
     flags: tuple[str, ...] = ()  # set by the result
-    given: tuple[str, ...] = ()  # of these, the ones that the function returns itself
+    taken: tuple[str, ...] = ()  # what the function gets: names of operands, flags, "flow", "machine", "state", "now"
+    given: tuple[str, ...] = ()  # flags and state that the function returns itself, after its values
     models: tuple[str, ...] = BOTH
     cleared: bool = False  # its destination is cleared when its MC is OFF or its step has been left (5.2.1, 5.3.1)
     application: bool = False  # an instruction of chapter 6: executed correctly it clears SM20 and SM22
@@ -42,11 +43,27 @@ class Definition:
     bus: bool = False  # stands on the left bus, without a flow before it
     faults: tuple[int, ...] = ()
     check: Callable | None = None  # (values of the constant operands) -> what is wrong with them, or None
+    counted: str | None = None  # which of the model's limits a program's instructions of this kind count towards
 
     @property
     def title(self) -> str:
         """The first sentence of the docstring."""
         return (self.function.__doc__ or "").strip().splitlines()[0]
+
+    @property
+    def keeps(self) -> bool:
+        """Whether it remembers something from one execution to the next, in a slot of the memory's list E."""
+        return "state" in self.taken or self.after
+
+    @property
+    def after(self) -> bool:
+        """Whether a command is called once more when its flow has gone."""
+        return self.form == "command" and "flow" in self.taken
+
+    @property
+    def assigns(self) -> bool:
+        """Whether its function gives values for its operands, rather than work on a unit or write structure."""
+        return self.form in ("value", "always", "command") and any(spec.written and spec.plain for spec in self.operands)
 
     @property
     def outputs(self) -> bool:
@@ -58,14 +75,19 @@ TABLE: dict[str, Definition] = {}
 
 
 def _define(form: str, mnemonic: str, signature: str, steps: int | None, section: str, **columns) -> Callable[[Callable], Callable]:
-    operands, given = parse_signature(signature)
-    columns["flags"] = tuple(dict.fromkeys((*columns.get("flags", ()), *given)))
+    operands, taken, given = parse_signature(signature)
+    columns["flags"] = tuple(dict.fromkeys((*columns.get("flags", ()), *(word for word in given if word != "state"))))
     columns.setdefault("application", section.startswith("6."))
 
     def decorate(function: Callable) -> Callable:
         if mnemonic in TABLE:
             raise ValueError(f"{mnemonic} is defined twice")
-        TABLE[mnemonic] = Definition(mnemonic, form, operands, steps, section, function, given=given, **columns)
+        parameters = function.__code__.co_varnames[: function.__code__.co_argcount]
+        first = tuple(name for name in parameters[:1] if name in ("flow", "machine"))
+        last = ("state",) if "state" in parameters and "state" not in taken else ()
+        TABLE[mnemonic] = Definition(
+            mnemonic, form, operands, steps, section, function, taken=(*first, *taken, *last), given=given, **columns
+        )
         return function
 
     return decorate
@@ -82,12 +104,15 @@ def value(mnemonic: str, signature: str, *, steps: int, section: str, **columns)
 
 
 def always(mnemonic: str, signature: str, *, steps: int, section: str, **columns):
-    """Executed in every scan with the flow, ON or OFF; what it returns, if anything, is the flow that goes on."""
+    """Executed in every scan with the flow, ON or OFF; it returns its new values, or without such operands the flow that goes on."""
     return _define("always", mnemonic, signature, steps, section, **columns)
 
 
 def command(mnemonic: str, signature: str, *, steps: int, section: str, **columns):
-    """The function gets the machine and the operand values while the flow is ON."""
+    """The function acts on the machine while the flow is ON; one that gets `flow` is called once more, with OFF, when the flow has gone.
+
+    It may have destinations and state as a value instruction has; with `flow` the state is what is true while it is at work.
+    """
     return _define("command", mnemonic, signature, steps, section, **columns)
 
 

@@ -7,10 +7,14 @@ left. After the type may follow, in this order:
     +SD -T        areas added to or taken from the usual ones of the type (table 3-3)
     [D V]         just these areas
     *S2  *4       a span of as many elements as S2 says, or of 4; the function gets or gives a list
+    *{S2+1}       the same as an expression of operands and flags
+    ^             a Kn string only in the full width of the type (K4, K8)
     ~  !          may be indexed, may not be indexed, where that differs from the usual
-    =0..7         range of a constant
+    =0..7         range of the value: a constant outside is refused, another value is error 64 when it is executed
 
-A word in small letters right of the arrow is a flag that the function gives itself (carry).
+A word in small letters is no operand. Left of the arrow it is something else that the function is given, right of it
+something that the function gives after its values: a flag by its meaning (carry), `state`, which the instruction keeps
+from one execution to the next (False at first), or `now`, the simulated time in microseconds.
 """
 
 import re
@@ -47,6 +51,7 @@ SPECIAL: dict[str, tuple[DataType, str, tuple[int, int] | None]] = {
     "NEST": (INT, "const", (0, 7)),
     "LABEL": (INT, "const", (0, 127)),
     "ROUTINE": (WORD, "routine", None),
+    "TEXT": (WORD, "text", None),  # characters as they are typed, as many as the span says
 }
 
 
@@ -64,15 +69,21 @@ class OperandSpec:
     span: str | int | None = None
     range: tuple[int, int] | None = None
     order: tuple[str, ...] = ()
+    whole: bool = False  # a Kn string must have the full width of the type
 
     @property
     def role(self) -> str:
         return "dest" if self.written else "source"
 
+    @property
+    def plain(self) -> bool:
+        """Whether the function gets or gives its value, and not a unit, a number of a device or a name."""
+        return self.kind not in SPECIAL
+
 
 _OPERAND = re.compile(
     r"(?P<out>>)?(?P<name>[A-Z]+[0-9]*):(?P<kind>[A-Z]+)(?P<changes>(?:[+-](?:Kn)?[A-Z]+|[+-]const)*)(?:\[(?P<areas>[A-Za-z ]+)\])?"
-    r"(?:\*(?P<span>[A-Z]*[0-9]+|[A-Z]))?(?P<mark>[~!])?(?:=(?P<low>-?\d+)\.\.(?P<high>-?\d+))?"
+    r"(?:\*(?P<span>[A-Z]*[0-9]+|[A-Z]|\{[^}]*\}))?(?P<whole>\^)?(?P<mark>[~!])?(?:=(?P<low>-?\d+)\.\.(?P<high>-?\d+))?"
 )
 
 
@@ -91,16 +102,17 @@ def _areas(match: re.Match, written: bool) -> tuple[str, ...]:
     return tuple(areas)
 
 
-def parse_signature(text: str) -> tuple[tuple[OperandSpec, ...], tuple[str, ...]]:
-    """The operands in the order in which they are written, and the flags that the function gives itself."""
+def parse_signature(text: str) -> tuple[tuple[OperandSpec, ...], tuple[str, ...], tuple[str, ...]]:
+    """The operands in the order in which they are written, the names of all that the function gets, the flags and state that it gives."""
     left, _, right = text.partition("->")
     sides = [(word, False) for word in _words(left)] + [(word, True) for word in _words(right)]
     written_names = {word.partition(":")[0] for word, written in sides if written}
     specs: list[OperandSpec] = []
-    flags: list[str] = []
+    taken: list[str] = []
+    given: list[str] = []
     for word, written in sides:
         if word.islower():
-            flags.append(word)
+            (given if written else taken).append(word)
             continue
         if ":" not in word:
             if word not in {spec.name for spec in specs}:
@@ -131,10 +143,13 @@ def parse_signature(text: str) -> tuple[tuple[OperandSpec, ...], tuple[str, ...]
                 span=int(span) if span and span.isdigit() else span,
                 range=value_range,
                 order=areas,
+                whole=bool(match["whole"]),
             )
         )
-    return tuple(specs), tuple(flags)
+        if specs[-1].read:
+            taken.append(name)
+    return tuple(specs), tuple(taken), tuple(given)
 
 
 def _words(text: str) -> list[str]:
-    return re.findall(r"[^\s\[]+(?:\[[^\]]*\]\S*)?", text)
+    return re.findall(r"(?:\[[^\]]*\]|\{[^}]*\}|[^\s\[{])+", text)
