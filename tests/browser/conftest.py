@@ -1,0 +1,165 @@
+"""A real JupyterLab and a real Chromium on it, each run with a home of its own."""
+
+import os
+import secrets
+import shutil
+import socket
+import subprocess
+import sys
+import threading
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+FLAGS = (
+    "--headless=new",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--no-first-run",
+    "--disable-dev-shm-usage",
+    "--disable-background-timer-throttling",
+    "--disable-renderer-backgrounding",
+    "--disable-backgrounding-occluded-windows",
+)
+CONNECTED = """() => {
+  const context = window.jupyterapp?.shell.currentWidget?.sessionContext;
+  return Boolean(context?.isReady && context.session?.kernel?.connectionStatus === 'connected');
+}"""
+IDLE = "() => window.jupyterapp.shell.currentWidget.sessionContext.session.kernel.status === 'idle'"
+EVALUATE = """async (code) => {
+  const kernel = window.jupyterapp.shell.currentWidget.sessionContext.session.kernel;
+  const future = kernel.requestExecute({ code, store_history: false });
+  let text = '';
+  future.onIOPub = (message) => {
+    if (message.header.msg_type === 'stream') text += message.content.text;
+    if (message.header.msg_type === 'error') text += message.content.evalue;
+  };
+  await future.done;
+  return text.trim();
+}"""
+
+
+def free_port():
+    """A port of loopback that nobody has."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+@dataclass
+class Server:
+    """A running JupyterLab and the folder that it shows."""
+
+    address: str
+    token: str
+    folder: Path
+
+
+@pytest.fixture(scope="session")
+def server(root, tmp_path_factory):
+    """JupyterLab on a copy of the notebooks; nothing of the person's own settings has a say in it."""
+    folder, home = tmp_path_factory.mktemp("notebooks"), tmp_path_factory.mktemp("jupyter")
+    for notebook in (root / "notebooks").glob("*.ipynb"):
+        shutil.copy(notebook, folder)
+    places = {
+        name: str(home / name.lower())
+        for name in (
+            "JUPYTER_CONFIG_DIR",
+            "JUPYTER_DATA_DIR",
+            "JUPYTER_RUNTIME_DIR",
+            "JUPYTERLAB_SETTINGS_DIR",
+            "JUPYTERLAB_WORKSPACES_DIR",
+            "IPYTHONDIR",
+        )
+    }
+    port, token = free_port(), secrets.token_hex(16)
+    command = [sys.executable, "-m", "jupyterlab", "--no-browser", "--expose-app-in-browser", "--ServerApp.ip=127.0.0.1"]
+    command += [
+        f"--ServerApp.port={port}",
+        "--ServerApp.port_retries=0",
+        f"--IdentityProvider.token={token}",
+        f"--ServerApp.root_dir={folder}",
+    ]
+    command += ["--LanguageServerManager.autodetect=False", *(["--allow-root"] if hasattr(os, "geteuid") and os.geteuid() == 0 else [])]
+    environment = {**os.environ, **places, "JUPYTER_CONFIG_PATH": str(root)}
+    process = subprocess.Popen(
+        command, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    )
+    said = []
+    for line in process.stdout:
+        said.append(line)
+        if "is running at" in line:
+            break
+    else:
+        pytest.fail("JupyterLab did not start:\n" + "".join(said[-20:]))
+    threading.Thread(target=process.stdout.read, daemon=True).start()  # a full pipe would stop it
+    yield Server(f"http://127.0.0.1:{port}", token, folder)
+    process.terminate()
+    process.wait(timeout=20)
+
+
+@pytest.fixture(scope="session")
+def browser(chromium):
+    """A headless Chromium."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=chromium, args=FLAGS)
+        yield browser
+        browser.close()
+
+
+class Notebook:
+    """An open notebook: its page, its cells, its kernel."""
+
+    def __init__(self, page):
+        self.page = page
+
+    def command(self, name, **arguments):
+        """One of JupyterLab's own commands."""
+        return self.page.evaluate("([name, arguments]) => window.jupyterapp.commands.execute(name, arguments)", [name, arguments])
+
+    def run_all(self):
+        """Run all cells and wait until the kernel has nothing more to do."""
+        self.command("notebook:run-all-cells")
+        self.wait_until_idle()
+
+    def run_cell(self, index):
+        """Run one cell again."""
+        self.page.evaluate("(index) => { window.jupyterapp.shell.currentWidget.content.activeCellIndex = index }", index)
+        self.command("notebook:run-cell")
+
+    def wait_until_idle(self):
+        """Wait for the kernel."""
+        self.page.wait_for_function(IDLE)
+
+    def kernel(self, code):
+        """What the kernel prints for a piece of code."""
+        return self.page.evaluate(EVALUATE, code)
+
+    def sources(self):
+        """The text of each cell."""
+        cells = "() => [...window.jupyterapp.shell.currentWidget.content.widgets].map((cell) => cell.model.sharedModel.getSource())"
+        return self.page.evaluate(cells)
+
+
+@pytest.fixture
+def open_notebook(server, browser):
+    """Open a notebook with a fresh kernel: the session is ready and connected when this returns."""
+    pages = []
+
+    def open_it(name, width=1280, height=900):
+        page = browser.new_page(viewport={"width": width, "height": height})
+        page.set_default_timeout(60_000)
+        pages.append(page)
+        page.goto(f"{server.address}/lab/tree/{name}?token={server.token}&reset")
+        page.wait_for_function(CONNECTED)
+        return Notebook(page)
+
+    yield open_it
+    for page in pages:
+        page.close()

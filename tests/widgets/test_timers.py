@@ -1,0 +1,51 @@
+"""Timers and counters in use, from a running program."""
+
+from ecsim_widgets.timers import Timers
+
+
+def test_a_row_for_each_timer_and_counter_with_name_kind_base_and_steps(rig):
+    layout = Timers(rig).layout()
+    timer, counter = layout["rows"]
+    assert (timer["device"], timer["name"], timer["kind"], timer["base"]) == ("T0", "Settle", "TON", "100 ms")
+    assert (counter["device"], counter["kind"], counter["base"]) == ("C0", "CTU", "")
+    assert len(timer["steps"].split(", ")) == 2  # where it is driven and where it is read
+    assert (layout["timers"], layout["counters"]) == (256, 256)
+
+
+def test_a_running_timer_shows_value_preset_contact_and_words(rig):
+    timers = Timers(rig)
+    rig.plc["X0"] = 1
+    rig.session.scan(2)  # S20 is active
+    rig.plc["X0"] = 0
+    rig.session.scan(30)
+    frame = timers.frame()
+    assert frame["T0"] in (2, 3)
+    assert (frame["T0.preset"], frame["T0.on"], frame["T0.is"]) == (5, 0, "run")
+    assert frame["T0.say"].endswith("to go*")
+    assert frame["C0"] == 1
+
+
+def test_the_active_step_has_its_elapsed_and_its_usual_time(rig):
+    timers = Timers(rig)
+    rig.session.scan(3)
+    assert [step[0] for step in timers.frame()["steps"]] == ["S0"]
+    rig.plc["X0"] = 1
+    rig.session.scan(3)
+    device, name, elapsed_us, usual_us, scans, _ = timers.frame()["steps"][0]
+    assert (device, name, usual_us) == ("S20", "hold it", 0)
+    assert (elapsed_us, scans) == (elapsed_us // 10_000 * 10_000, elapsed_us // 10_000)
+    rig.plc["X0"] = 0
+    rig.session.scan(60)  # 500 ms in S20, then S0
+    usual_us, times = rig.times.usual["S20"]
+    assert times == 1
+    assert abs(usual_us - 510_000) <= 20_000
+
+
+def test_a_preset_in_a_register_is_the_registers_value(make_rig):
+    rig = make_rig(program="LD X0\nTON T200 D5\n")
+    rig.plc["D5"] = 123
+    assert Timers(rig).frame()["T200.preset"] == 123
+
+
+def test_a_program_without_timers_has_no_rows(make_rig):
+    assert Timers(make_rig(program="LD X0\nOUT Y0")).layout()["rows"] == []

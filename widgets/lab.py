@@ -1,0 +1,103 @@
+"""The lab: one simulation with all its panels on the page."""
+
+from __future__ import annotations
+
+import contextlib
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from ecsim.assembler import Program
+from ecsim.plc import Plc
+from ecsim.session import Session
+
+from .chart import Chart
+from .history import Watch
+from .ladder import Ladder
+from .machine import Machine
+from .panel import Panel
+from .rig import Rig, Terminals
+from .timers import Timers
+from .transport import Transport
+from .unit import Unit
+
+PARTS = {part.key: part for part in (Transport, Unit, Machine, Chart, Ladder, Timers)}
+
+
+def parts_of(rig: Rig) -> list[str]:
+    """The panels that have something to show: no machine without a picture, no chart without steps."""
+    shown = {"machine": rig.picture is not None, "chart": bool(rig.charted)}
+    return [key for key in PARTS if shown.get(key, True)]
+
+
+class Lab(Panel):
+    """A PLC with its program, its plant and all panels, running on its own.
+
+    `model` is a model's name or a Plc, `program` what `Plc.load` takes, `plant` a machine with `wiring` and `step`,
+    `picture` its drawing. `controls` says what drives an input: "switch" (the default), "push", "latch" or "stop".
+    A lab of the same `name` is stopped and closed first, so running a cell again leaves one simulation.
+    `speed` is times real time, None as fast as it goes; `autostart=False` leaves it paused. Raises ProgramError.
+    """
+
+    _labs: dict[str, Lab] = {}
+
+    def __init__(
+        self,
+        model: str | Plc = "EC20",
+        program: str | Path | Program | None = None,
+        plant: Any = None,
+        picture: Any = None,
+        *,
+        name: str = "lab",
+        speed: float | None = 1.0,
+        autostart: bool = True,
+        controls: Mapping[str, str] | None = None,
+        title: str = "",
+    ):
+        plc = model if isinstance(model, Plc) else Plc(model)
+        if program is not None:
+            plc.load(program)
+        terminals = Terminals(plant) if plant is not None else None
+        watch = Watch()
+        session = Session(plc, plant=terminals, name=name, speed=speed, record=watch)
+        if name in self._labs:
+            self._labs.pop(name).close()
+        self.name = name
+        title = title or re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(plant).__name__) if plant is not None else ""
+        rig = Rig(plc, session, watch, terminals=terminals, picture=picture, controls=controls, title=title)
+        super().__init__(rig, [PARTS[key](rig) for key in parts_of(rig)])
+        self._labs[name] = self
+        plc.tracing = True
+        if autostart:
+            session.run()
+
+    @property
+    def plc(self) -> Plc:
+        """The PLC; reading it and setting inputs from a cell is safe while it runs."""
+        return self.rig.plc
+
+    @property
+    def session(self) -> Session:
+        """What runs the PLC: run, pause, scan, next_step, back, reset, speed, set."""
+        return self.rig.session
+
+    def panel(self, key: str) -> Panel:
+        """One panel of this lab alone: "transport", "unit", "machine", "chart", "ladder" or "timers"."""
+        there = parts_of(self.rig)
+        if key not in there:
+            raise ValueError(f"there is no panel {key!r} here; there are {', '.join(there)}")
+        return Panel(self.rig, [PARTS[key](self.rig)])
+
+    def stop(self) -> None:
+        """End the simulation; raises what went wrong inside it. The panels keep the last state."""
+        self.session.stop()
+
+    def close(self) -> None:
+        """End the simulation and take the panels from the page."""
+        with contextlib.suppress(Exception):
+            self.session.stop()
+        super().close()
+
+    def __repr__(self) -> str:
+        return f"<Lab {self.name!r}: {self.plc.model.name}, {self.plc.program.steps} steps>"

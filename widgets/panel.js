@@ -1,0 +1,291 @@
+// What all panels share: the link to the kernel, the frame around a panel, the drawings that only change attributes.
+// Every panel's own file adds one function to `panels`. Python puts the files together; there is no build step.
+//
+//   panels.unit = (place, layout, page) => ({ apply(changes, state), pulsed(keys), rest(dead) })
+//
+// `place` is the element to fill, `layout` what Python said once, `page` the link. `apply` gets the entries that
+// changed and the whole state; `pulsed` the bits that were on between two frames; `rest` whether the kernel is gone.
+
+const panels = {};
+const HOLD_MS = 700; // --ec-t-hold: how long a one-scan mark stays
+const SILENCE_MS = 2500; // an unanswered question means that there is no kernel
+const KEY = "EC0-"; // the prefix of all ids in a drawing as Python sends it; made unique for every view
+
+const escaped = (text) => String(text ?? "").replace(/[&<>"']/g, (sign) => `&#${sign.charCodeAt(0)};`);
+const number = (value, digits = 0) =>
+  Number(value).toLocaleString("en-US", { minimumFractionDigits: digits, maximumFractionDigits: digits }).replace("-", "−");
+const seconds = (us, digits = 3) => number(us / 1e6, digits);
+
+const ICONS = {
+  back: '<path class="fill" d="M11.5 3.5v9L5.5 8z"/><path d="M3.75 3.5v9"/>',
+  run: '<path class="fill" d="M4.5 2.75v10.5l8.5-5.25z"/>',
+  pause: '<path class="fill" d="M4 3h3v10H4zM9 3h3v10H9z"/>',
+  scan: '<path class="fill" d="M4.5 3.5v9l6-4.5z"/><path d="M12.25 3.5v9"/>',
+  step: '<path class="fill" d="M1.5 4v8l4.5-4z"/><rect x="8.25" y="4.25" width="6" height="7.5"/>',
+  stop: '<rect class="fill" x="3.5" y="3.5" width="9" height="9"/>',
+  cross: '<path d="M4 4l8 8M12 4l-8 8"/>',
+  unplugged: '<path d="M9.5 3.5l3 3-2 2-3-3zM3.5 9.5l3 3 2-2-3-3zM12 4l2-2M2 14l2-2M7 8l-1 1M8 9l-1 1"/>',
+  reset: '<path d="M3.2 8a4.9 4.9 0 1 0 1.6-3.6"/><path d="M3.2 2.2v3.4h3.4"/>',
+  follow: '<circle cx="8" cy="8" r="4.25"/><path d="M8 1.5v3M8 11.5v3M1.5 8h3M11.5 8h3"/>',
+};
+const icon = (name, size = 16) =>
+  `<svg class="ico" width="${size}" height="${size}" viewBox="0 0 16 16" aria-hidden="true">${ICONS[name]}</svg>`;
+
+// A device as it is named in words: the variable's name in the text face, its address after it in the code face.
+const named = (name, device) => (name ? `${escaped(name)} <span class="mono">${escaped(device)}</span>` : `<span class="mono">${escaped(device)}</span>`);
+
+function set(node, attribute, value) {
+  if (value === null || value === undefined || value === false) node.removeAttribute(attribute);
+  else if (node.getAttribute(attribute) !== String(value)) node.setAttribute(attribute, value);
+}
+function write(node, text) {
+  if (node.textContent !== text) node.textContent = text;
+}
+
+// The frame of a panel: title, what it shows, tools, the stamp of the moment.
+function frame(place, { title, sub = "", key, tools = "" }) {
+  place.innerHTML = `
+    <section class="panel" aria-label="${escaped(title)}" data-testid="${key}">
+      <header class="panel-head"><h2>${escaped(title)}</h2><span class="sub">${escaped(sub)}</span><span class="gap"></span>${tools}<span class="stamp"></span></header>
+      <div class="panel-body"></div>
+    </section>`;
+  const section = place.firstElementChild;
+  return { section, body: section.querySelector(".panel-body"), sub: section.querySelector(".sub") };
+}
+
+// A drawing arrives as SVG once; afterwards a frame is "key:attribute" -> value and touches nothing else.
+class Drawing {
+  static count = 0;
+  constructor(host, markup) {
+    this.prefix = `ec${++Drawing.count}-`;
+    this.known = new Map();
+    host.innerHTML = markup.replaceAll(KEY, this.prefix);
+    this.svg = host.querySelector("svg");
+    for (const node of this.svg.querySelectorAll("[data-testid]")) node.dataset.testid = node.dataset.testid.replace(this.prefix, "");
+  }
+  find(key) {
+    let node = this.known.get(key);
+    if (node === undefined) {
+      node = this.svg.querySelector(`[id="${CSS.escape(this.prefix + key)}"]`);
+      this.known.set(key, node);
+    }
+    return node;
+  }
+  apply(changes) {
+    for (const [entry, value] of Object.entries(changes)) {
+      const cut = entry.lastIndexOf(":");
+      if (cut < 0) continue; // an entry of the panel itself
+      const node = this.find(entry.slice(0, cut));
+      if (!node) continue;
+      const attribute = entry.slice(cut + 1);
+      if (attribute === "text") write(node, value ?? "");
+      else set(node, attribute, value);
+    }
+  }
+}
+
+// One stop of Tab; the arrows move among `nodes()` inside it. Each node tells its place by data-row and data-col.
+function roving(root, nodes) {
+  const enter = (node) => {
+    for (const other of nodes()) other.tabIndex = other === node ? 0 : -1;
+  };
+  const first = nodes()[0];
+  if (first) enter(first);
+  root.addEventListener("focusin", (event) => {
+    const node = nodes().find((other) => other === event.target);
+    if (node) enter(node);
+  });
+  root.addEventListener("keydown", (event) => {
+    const at = nodes().find((other) => other === event.target);
+    const move = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [-1, 0], ArrowDown: [1, 0], Home: [0, -99], End: [0, 99] }[event.key];
+    if (!at || !move || event.ctrlKey || event.metaKey || event.altKey) return;
+    const [row, col] = [Number(at.dataset.row), Number(at.dataset.col)];
+    const others = nodes().filter((other) => other !== at && other.getClientRects().length);
+    const ahead = others.filter((other) =>
+      move[0] ? Math.sign(other.dataset.row - row) === move[0] : Number(other.dataset.row) === row && Math.sign(other.dataset.col - col) === Math.sign(move[1]),
+    );
+    const far = Math.abs(move[1]) > 1 ? -1 : 1;
+    const weight = (other) => Math.abs(other.dataset.row - row) * 100 + Math.abs(other.dataset.col - col);
+    const next = ahead.sort((a, b) => far * (weight(a) - weight(b)))[0];
+    event.preventDefault();
+    event.stopPropagation();
+    if (next) {
+      enter(next);
+      next.focus();
+    }
+  });
+}
+
+// The link to the kernel, one for each model in this page and shared by its views: it merges frames, acknowledges
+// them, keeps the last state for a view that comes later, and finds out when nobody answers any more.
+class Page {
+  constructor(model) {
+    this.model = model;
+    this.layout = model.get("face") ?? {};
+    this.state = structuredClone(model.get("last") ?? {});
+    this.views = new Set();
+    this.waiting = null;
+    this.pulses = {};
+    this.dead = false;
+    this.heard = performance.now();
+    model.on("msg:custom", (message) => this.receive(message));
+    model.on("comm_live_update", () => this.ask());
+    this.watch = setInterval(() => performance.now() - this.heard > 5000 && this.ask(), 1000);
+    this.ask({ hello: true });
+  }
+  close() {
+    clearInterval(this.watch);
+    clearTimeout(this.unanswered);
+  }
+  send(message) {
+    try {
+      this.model.send(message);
+    } catch {
+      this.mourn(true); // the comm has gone with its kernel
+    }
+  }
+  say(part, verb, values = {}) {
+    if (!this.dead) this.send({ part, do: verb, ...values });
+  }
+  ask(question = { ping: true }) {
+    this.send(question);
+    this.unanswered ??= setTimeout(() => this.mourn(true), SILENCE_MS);
+  }
+  mourn(dead) {
+    this.dead = dead;
+    for (const view of this.views) view.rest(dead);
+  }
+  receive(message) {
+    this.heard = performance.now();
+    clearTimeout(this.unanswered);
+    this.unanswered = undefined;
+    if (this.dead) {
+      this.mourn(false);
+      if (!message.full) this.ask({ hello: true });
+    }
+    if (message.ack) this.send({ ack: message.n });
+    if (message.layout) {
+      this.layout = message.layout;
+      this.model.set("face", message.layout);
+      for (const view of this.views) view.build();
+    }
+    if (message.full) {
+      this.state = {};
+      this.waiting = null;
+    }
+    if (message.state) this.merge(message.state);
+    for (const [part, keys] of Object.entries(message.pulsed ?? {})) (this.pulses[part] ??= new Set(keys)) && keys.forEach((key) => this.pulses[part].add(key));
+    this.drawn ??= requestAnimationFrame(() => this.draw());
+  }
+  merge(state) {
+    this.waiting ??= {};
+    for (const [part, entries] of Object.entries(state)) {
+      Object.assign((this.state[part] ??= {}), entries);
+      Object.assign((this.waiting[part] ??= {}), entries);
+    }
+  }
+  draw() {
+    this.drawn = undefined;
+    const changes = this.waiting ?? {};
+    for (const view of this.views) {
+      view.apply(changes);
+      view.pulsed(this.pulses);
+    }
+    this.waiting = null;
+    this.pulses = {};
+    // Kept in the page alone, so that a notebook saved with its widgets shows the last state when it is opened again.
+    this.model.set("last", this.state);
+  }
+}
+
+// One place on the page where a page's panels are shown.
+class View {
+  constructor(page, el) {
+    this.page = page;
+    this.root = document.createElement("div");
+    this.root.className = "ec ec-root";
+    this.root.tabIndex = -1;
+    this.root.dataset.lmSuppressShortcuts = "true"; // R, N and Space are ours while the focus is here
+    this.root.dataset.testid = "ec";
+    el.append(this.root);
+    this.build();
+    this.root.addEventListener("keydown", (event) => this.shortcut(event));
+    page.views.add(this);
+  }
+  build() {
+    const { parts = [], panels: layouts = {} } = this.page.layout;
+    this.parts = {};
+    this.root.innerHTML = parts.length > 1 ? '<div class="lab"><div class="lab-a"></div><div class="lab-b"></div></div>' : '<div class="alone"></div>';
+    const grid = this.root.firstElementChild;
+    for (const part of parts) {
+      const place = document.createElement("div");
+      place.className = `area area-${part}`;
+      if (part === "transport" || parts.length === 1) grid.prepend(place);
+      else grid.querySelector(part === "chart" || part === "ladder" ? ".lab-b" : ".lab-a").append(place);
+      this.parts[part] = panels[part](place, layouts[part] ?? {}, this.page, this);
+    }
+    if (parts.length > 1) columns(grid);
+    this.apply(this.page.state);
+    this.rest(this.page.dead);
+  }
+  apply(changes) {
+    for (const [part, panel] of Object.entries(this.parts)) {
+      if (changes.run) panel.run?.(this.page.state.run);
+      if (changes[part]) panel.apply(changes[part], this.page.state[part]);
+    }
+    if (changes.run) this.stamp();
+  }
+  pulsed(pulses) {
+    for (const [part, keys] of Object.entries(pulses)) this.parts[part]?.pulsed?.(keys);
+  }
+  rest(dead) {
+    set(this.root, "data-dead", dead ? "" : null);
+    for (const panel of Object.values(this.parts)) panel.rest?.(dead);
+    this.stamp();
+  }
+  stamp() {
+    const run = this.page.state.run;
+    if (!run) return;
+    const moment = this.page.dead ? `last state · scan ${number(run.scan)}` : `scan ${number(run.scan)} · ${seconds(run.time_us)} s`;
+    for (const node of this.root.querySelectorAll(".stamp")) write(node, moment);
+  }
+  shortcut(event) {
+    if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || event.target.closest("input, textarea")) return;
+    const verb = { r: "toggle", R: "toggle", " ": "scan", n: "next_step", N: "next_step", ArrowLeft: "back" }[event.key];
+    if (!verb || !this.parts.transport) return;
+    event.preventDefault();
+    event.stopPropagation();
+    this.parts.transport.press(verb);
+  }
+  close() {
+    this.page.views.delete(this);
+    for (const panel of Object.values(this.parts)) panel.close?.();
+    this.root.remove();
+  }
+}
+
+// The lab's columns follow its own width, not the window's: in a cell, beside a notebook, on a wall.
+function columns(grid) {
+  const fit = () => {
+    const width = grid.clientWidth;
+    grid.dataset.columns = width >= 1300 ? "wide" : width >= 780 ? "pair" : "one";
+  };
+  new ResizeObserver(fit).observe(grid);
+  fit();
+}
+
+const pages = new Map();
+export default {
+  initialize({ model }) {
+    const page = new Page(model);
+    pages.set(model.get("page"), page);
+    return () => {
+      pages.delete(model.get("page"));
+      page.close();
+    };
+  },
+  render({ model, el }) {
+    const view = new View(pages.get(model.get("page")), el);
+    return () => view.close();
+  },
+};

@@ -1,0 +1,276 @@
+"""What the panels of one simulation share: the PLC and its session, who drives each input, and the history of the steps.
+
+Nothing here knows Jupyter. A panel reads the rig when it makes a frame; a message from the page becomes one call on it.
+"""
+
+from __future__ import annotations
+
+import copy
+import re
+from collections import deque
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+from ecsim.devices import Bits, Constant, number_text
+from ecsim.errors import EcsimError
+
+from .history import StepTimes, Watch
+
+PREFIX = "EC0-"  # of all ids in a drawing; the page makes it unique for each view
+LEAST_POINTS = {"X": 16, "Y": 12}
+RECENT = 24  # scan times shown beside the watchdog
+
+
+class Moment(NamedTuple):
+    """What a machine's picture is drawn from: the plant, and the terminals (device -> 0 or 1)."""
+
+    plant: Any
+    inputs: Mapping[str, int]
+    outputs: Mapping[str, int]
+
+
+class Terminals:
+    """The terminals between unit and machine; in the session it stands for the plant.
+
+    An input belongs to the hand until the machine drives it; a driven one can be taken over ("stuck") and given back.
+    """
+
+    def __init__(self, plant: Any):
+        self.plant = plant
+        self.wiring: Mapping[str, Any] = plant.wiring
+        self.stuck: dict[str, int] = {}
+        outputs = {device: 0 for device in self.wiring if device.startswith("Y")}
+        self.inputs: dict[str, int] = plant.step(0.0, outputs)  # no time passes: it tells what its sensors say
+        self.driven = frozenset(self.inputs)
+
+    def step(self, seconds: float, outputs: Mapping[str, int]) -> dict[str, int]:
+        """Move the machine on; gives the levels at the terminals that it drives."""
+        self.inputs = self.plant.step(seconds, outputs)
+        return {**self.inputs, **self.stuck} if self.stuck else self.inputs
+
+    def state(self) -> tuple:
+        """Everything that changes, as a value; `restore` takes it back."""
+        plant = self.plant.state() if hasattr(self.plant, "state") else copy.deepcopy(vars(self.plant))
+        return plant, dict(self.stuck), dict(self.inputs)
+
+    def restore(self, state: tuple) -> None:
+        """Make everything what it was when `state` was taken."""
+        plant, stuck, inputs = state
+        if hasattr(self.plant, "restore"):
+            self.plant.restore(plant)
+        else:
+            vars(self.plant).update(copy.deepcopy(plant))
+        self.stuck, self.inputs = dict(stuck), dict(inputs)
+
+
+class Rig:
+    """One simulation as its panels see it."""
+
+    def __init__(
+        self,
+        plc: Any,
+        session: Any,
+        watch: Watch,
+        *,
+        terminals: Terminals | None = None,
+        picture: Any = None,
+        controls: Mapping[str, str] | None = None,
+        title: str = "Machine",
+    ):
+        self.plc, self.session, self.watch, self.terminals = plc, session, watch, terminals
+        self.wiring = terminals.wiring if terminals else {}
+        self.picture, self.title = picture, title
+        self.controls = dict(controls or {})
+        self.program = plc.program
+        self.instructions = self.program.instructions if self.program else []
+        self._names = {device: point.name for device, point in self.wiring.items()}
+        self._comments = {device: point.what for device, point in self.wiring.items()}
+        for variable in self.program.variables.values() if self.program else ():
+            self._names[str(variable.device)] = variable.name
+            self._comments.setdefault(str(variable.device), variable.comment)
+        units = self.program.units if self.program else []
+        self._titles = {
+            unit.instructions[index].position: title
+            for unit in units
+            for index, title in unit.titles.items()
+            if index < len(unit.instructions)
+        }
+        self.inputs, self.outputs = self._points("X"), self._points("Y")
+        self._places: dict[str, tuple[str, int]] = {}
+        self.refused = ""  # why the last thing asked for was not done
+        self.recent: deque[int] = deque(maxlen=RECENT)
+        self.charted = {str(i.operands[0]): i for i in reversed(self.instructions) if i.mnemonic == "STL"}  # the first STL of each step
+        self.charted = dict(reversed(self.charted.items()))
+        self._times = StepTimes()
+        self._times_of: tuple[int, Any] = (0, None)
+        watch.watchers.append(self._note_scan)
+
+    # -- what there is ------------------------------------------------------------------------------------------
+
+    def _points(self, area: str) -> list[str]:
+        """The unit's terminals of an area: the least it has, in whole groups of eight more where program or machine use more."""
+        operands = [
+            operand for instruction in self.instructions for operand in instruction.operands if getattr(operand, "area", "") == area
+        ]
+        last = [operand.number + (4 * operand.digits if isinstance(operand, Bits) else 1) for operand in operands]
+        last += [int(device[1:], 8) + 1 for device in self.wiring if device.startswith(area)]
+        used = max(last, default=0)
+        count = LEAST_POINTS[area] if used <= LEAST_POINTS[area] else -(-used // 8) * 8
+        return [f"{area}{number_text(area, number)}" for number in range(min(count, self.plc.model.areas[area].count))]
+
+    def name(self, device: str) -> str:
+        """The variable's name, or what the machine calls the point."""
+        return self._names.get(device, "")
+
+    def point(self, device: str) -> tuple[str, str]:
+        """A terminal's name and what it is."""
+        return self.name(device), self._comments.get(device, "")
+
+    def step_name(self, device: str) -> str:
+        """What a step is called: its variable, the comment of its STL, or the comment line before it."""
+        if device not in self.charted:
+            return ""
+        stl = self.charted[device]
+        words = self.name(device) or stl.comment or self._titles.get(stl.position, "")
+        return re.sub(rf"^{device}\b[\s:.,-]*", "", words)
+
+    # -- values -------------------------------------------------------------------------------------------------
+
+    def bit(self, device: str) -> int:
+        """A bit as the program sees it; of T and C the contact."""
+        area, number = self._place(device)
+        return int(self.plc.memory.bits(area)[number])
+
+    def terminal(self, device: str) -> int:
+        """What the wiring holds at an input's terminal."""
+        return int(self.plc.inputs.terminals[self._place(device)[1]])
+
+    def _place(self, device: str) -> tuple[str, int]:
+        place = self._places.get(device)
+        if place is None:
+            parsed, _ = self.plc.memory.parse(device)
+            place = self._places[device] = parsed.area, parsed.number
+        return place
+
+    def value(self, operand: Any) -> int:
+        """A constant, or the value of the register that stands in its place."""
+        if isinstance(operand, Constant):
+            return int(operand.value)
+        index = 0 if operand.index is None else self.plc.memory.lists[operand.index_area][operand.index]
+        return int(self.plc[str(replace(operand, number=operand.number + index, index=None))])
+
+    def flow(self, position: int) -> bool:
+        """Whether power flowed at an instruction in the last recorded scan."""
+        trace = self.plc.trace
+        return bool(trace and trace.flow[position])
+
+    @property
+    def watchdog_ms(self) -> int:
+        """The longest time the program may take."""
+        return self.plc.system.watchdog_ms
+
+    def status(self) -> dict[str, int]:
+        """The three lamps of the unit."""
+        return {"RUN": int(self.plc.running), "ERR": int(bool(self.plc.errors)), "BAT": 0}
+
+    def run(self) -> dict[str, Any]:
+        """The state of the run, which every panel is stamped with."""
+        plc, session = self.plc, self.session
+        errors = plc.errors if plc.system_error else []
+        return {
+            "state": session.state,
+            "mode": "RUN" if plc.running else "STOP",
+            "scan": plc.scans,
+            "time_us": plc.time_us,
+            "scan_us": plc.period_us,
+            "recent": list(self.recent),
+            "speed": session.speed,
+            "plant": session.plant_on if self.terminals else None,
+            "can_back": session.history.first is not None and session.history.first < plc.scans,
+            "error": f"{type(session.error).__name__}: {session.error}" if session.error else "",
+            "refused": self.refused,
+            "fault": f"Error {errors[0].code}, {errors[0].meaning}" if errors else "",
+        }
+
+    def machine_moment(self) -> Moment:
+        """What the machine's picture is drawn from: the tags show the unit's terminals."""
+        inputs = {device: self.terminal(device) for device in self.wiring if device.startswith("X")}
+        outputs = {device: self.bit(device) for device in self.wiring if device.startswith("Y")}
+        return Moment(self.terminals.plant, inputs, outputs)
+
+    # -- steps --------------------------------------------------------------------------------------------------
+
+    def active(self) -> list[str]:
+        """The steps of the charts that are active, in the program's order."""
+        return [device for device in self.charted if self.bit(device)]
+
+    def since(self, device: str) -> tuple[int, int]:
+        """How long a step has been active: microseconds and scans."""
+        began_us = self.session.step_since.get(device)
+        elapsed_us = 0 if began_us is None else self.plc.time_us - began_us
+        return elapsed_us, round(elapsed_us / self.plc.period_us)
+
+    @property
+    def times(self) -> StepTimes:
+        """The steps' past, from the session's log."""
+        log = self.session.log
+        now = len(log), log[-1] if log else None
+        if now != self._times_of:
+            self._times, self._times_of = StepTimes.of(log), now
+        return self._times
+
+    def _note_scan(self) -> None:
+        self.recent.append(self.plc.period_us)
+
+    def by(self, device: str) -> str:
+        """Who drives an input: "hand", "machine" or "stuck"."""
+        if not self.session.plant_on or device not in self.terminals.driven:
+            return "hand"
+        return "stuck" if device in self.terminals.stuck else "machine"
+
+    # -- what the page may do -----------------------------------------------------------------------------------
+
+    def post(self, action: Callable[[Any], object]) -> None:
+        """Have an action done in the session's thread; what it refuses is told in the run control, not raised there."""
+        self.session.post(lambda plc: self._do(action, plc))
+
+    def _do(self, action: Callable[[Any], object], plc: Any) -> None:
+        try:
+            action(plc)
+            self.refused = ""
+        except EcsimError as error:
+            self.refused = str(error)
+
+    def call(self, action: Callable[[], object]) -> None:
+        """Do what the session may refuse; the reason is told in the run control."""
+        self._do(lambda plc: action(), self.plc)
+
+    def connect(self, on: bool) -> None:
+        """Connect the machine to the terminals, or leave them to the hand."""
+        if self.terminals is not None:
+            self.post(lambda plc: self._connect(plc, on))
+            self.session.plant_on = on
+
+    def _connect(self, plc: Any, on: bool) -> None:
+        self.terminals.stuck = {}
+        if on:
+            plc.set(self.terminals.inputs)
+
+    def put(self, device: str, level: int) -> None:
+        """Put a level on an input; one that the machine drives is taken over and held."""
+        self.post(lambda plc: self._put(plc, device, level))
+
+    def _put(self, plc: Any, device: str, level: int) -> None:
+        if self.by(device) != "hand":
+            self.terminals.stuck = {**self.terminals.stuck, device: level}
+        plc[device] = level
+
+    def free(self, device: str) -> None:
+        """Give an input back to the machine."""
+        self.post(lambda plc: self._free(plc, device))
+
+    def _free(self, plc: Any, device: str) -> None:
+        if self.by(device) == "stuck":
+            self.terminals.stuck = {other: level for other, level in self.terminals.stuck.items() if other != device}
+            plc[device] = self.terminals.inputs[device]

@@ -1,0 +1,98 @@
+// Timers and counters in use, and the time of the active steps: value, preset, a bar, the state in words.
+
+panels.timers = (place, layout, page) => {
+  const { rows = [], timers = 0, counters = 0 } = layout;
+  const { body } = frame(place, { title: "Timers and counters", sub: `${rows.length} in use`, key: "timers" });
+  const contact = `<svg class="ec mini" width="30" height="20" viewBox="0 0 30 20" role="img"><path class="wire" d="M0 10H9M21 10H30"/><g class="contact open"><rect class="gap" x="9" y="1" width="12" height="18"/><path class="bars" d="M9 1v18M21 1v18"/></g></svg>`;
+  const step = `<svg class="ec mini" width="30" height="20" viewBox="0 0 30 20" aria-hidden="true"><g class="step active"><rect class="box" x="2" y="1" width="26" height="18" rx="2"/><circle class="token" cx="15" cy="10" r="3"/></g></svg>`;
+  const gauge = (kind = "") =>
+    `<svg class="gauge ${kind}" width="100%" height="18" viewBox="0 0 300 18" preserveAspectRatio="none" aria-hidden="true"><g class="track"></g><g class="fill"></g><path class="zero" d=""/><path class="goal" d=""/></svg>`;
+  const row = (one) => `
+    <tr data-device="${one.device}" data-testid="row-${one.device}" data-state="off">
+      <td>${contact}</td><td class="mono dev">${one.device}</td><td class="nm" title="${escaped(one.name)}">${escaped(one.name)}</td><td class="mono dim kind">${one.kind}</td>
+      <td class="num val"><b data-testid="${one.device}">0</b></td><td class="num dim preset"></td><td class="bar">${gauge()}</td>
+      <td class="num dim base">${escaped(one.base)}</td><td class="say"></td><td class="mono dim used">${escaped(one.steps)}</td></tr>`;
+  const group = (word, about) => `<tr class="group"><th colspan="10" scope="rowgroup">${word} <span>${about}</span></th></tr>`;
+  const of = (kind, total) => {
+    const list = rows.filter((one) => one.unit === kind);
+    return list.length ? group(kind === "timer" ? "Timers" : "Counters", `${list.length} of ${total} used`) + list.map(row).join("") : "";
+  };
+  body.innerHTML = `
+    <table class="grid timers"><thead><tr><th><span class="visually-hidden">Contact</span></th><th>Device</th><th>Name</th><th class="kind">Kind</th><th class="num">Value</th><th class="num">Preset</th><th></th><th class="num base">Base</th><th>State</th><th class="used">Steps</th></tr></thead>
+      <tbody>${of("timer", timers)}${of("counter", counters)}</tbody><tbody class="steps"></tbody></table>`;
+  if (!rows.length && !layout.sfc) body.innerHTML = '<p class="nothing">The program uses no timers and no counters.</p>';
+  const bold = (words) => escaped(words).replace(/\*(.+?)\*/g, "<b>$1</b>");
+
+  function draw(node, value, preset, segments, twoSided) {
+    const [track, fill, goal, zero] = [".track", ".fill", ".goal", ".zero"].map((part) => node.querySelector(part));
+    const shape = `${preset}/${segments}/${twoSided}`;
+    const cells = segments && preset > 0 && preset <= 20 ? preset : 1;
+    const pitch = 300 / cells;
+    const part = (at, from, to, thick) => `<rect x="${(at * pitch + from).toFixed(1)}" y="${9 - thick / 2}" width="${Math.max(0, to - from).toFixed(1)}" height="${thick}"/>`;
+    if (node.dataset.shape !== shape) {
+      node.dataset.shape = shape;
+      const gap = cells > 1 ? 3 : 0;
+      track.innerHTML = Array.from({ length: cells }, (_, at) => part(at, 0, pitch - gap, 6)).join("");
+      set(goal, "d", cells > 1 ? "" : twoSided ? `M${150 + 120 * Math.sign(preset)} 1v16` : "M299 1v16");
+      set(zero, "d", twoSided ? "M150 1v16" : "");
+    }
+    if (twoSided) {
+      const at = Math.max(-150, Math.min(150, (120 * value) / Math.abs(preset || 1)));
+      fill.innerHTML = `<rect x="${Math.min(150, 150 + at).toFixed(1)}" y="5" width="${Math.abs(at).toFixed(1)}" height="8"/>`;
+    } else if (cells > 1) {
+      fill.innerHTML = Array.from({ length: Math.min(cells, Math.max(0, value)) }, (_, at) => part(at, 0, pitch - 3, 8)).join("");
+    } else {
+      const at = preset > 0 ? Math.max(0, Math.min(1, value / preset)) * 300 : 0;
+      fill.innerHTML = `<rect x="0" y="5" width="${at.toFixed(1)}" height="8"/>`;
+    }
+  }
+
+  function show(one, state) {
+    const line = body.querySelector(`tr[data-device="${one.device}"]`);
+    const value = state[one.device] ?? 0;
+    const preset = state[`${one.device}.preset`] ?? 0;
+    const on = state[`${one.device}.on`];
+    set(line, "data-state", state[`${one.device}.is`] ?? "off");
+    write(line.querySelector(".val b"), number(value));
+    write(line.querySelector(".preset"), number(preset));
+    set(line.querySelector(".contact"), "class", on ? "contact flow" : "contact open");
+    set(line.querySelector(".wire"), "class", on ? "wire on" : "wire");
+    set(line.querySelector(".mini"), "aria-label", on ? "contact closed" : "contact open");
+    set(line.querySelector(".mini"), "data-on", on ? "" : null);
+    draw(line.querySelector(".gauge"), value, preset, one.unit === "counter", one.kind === "DCNT");
+    const say = line.querySelector(".say");
+    const words = bold(state[`${one.device}.say`] ?? "");
+    if (say.dataset.words !== words) say.innerHTML = say.dataset.words = words;
+  }
+
+  function active(steps) {
+    const tail = body.querySelector(".steps");
+    if (!tail) return;
+    const shape = steps.map(([device]) => device).join(" ");
+    if (tail.dataset.shape !== shape) {
+      tail.dataset.shape = shape;
+      tail.innerHTML =
+        group("Active steps", steps.length ? "time in the step, against the usual time" : "none") +
+        steps.map(([device, name, , , , used]) => `
+          <tr data-device="${device}"><td>${step}</td><td class="mono dev">${device}</td><td class="nm" title="${escaped(name)}">${escaped(name)}</td><td class="mono dim kind">STL</td>
+          <td class="num val"><b></b></td><td class="num dim preset"></td><td class="bar">${gauge("step")}</td><td class="num dim base">s</td><td class="say"></td><td class="mono dim used">${escaped(used)}</td></tr>`).join("");
+    }
+    for (const [device, , elapsed_us, usual_us, scans] of steps) {
+      const line = tail.querySelector(`tr[data-device="${device}"]`);
+      write(line.querySelector(".val b"), seconds(elapsed_us, 2));
+      write(line.querySelector(".preset"), usual_us ? seconds(usual_us, 2) : "");
+      draw(line.querySelector(".gauge"), elapsed_us, usual_us ?? 0, false, false);
+      set(line.querySelector(".goal"), "class", "goal soft");
+      set(line.querySelector(".goal"), "d", usual_us ? "M299 1v16" : "");
+      write(line.querySelector(".say"), `${number(scans)} ${scans === 1 ? "scan" : "scans"}${usual_us ? `, usually ${seconds(usual_us, 2)} s` : ""}`);
+    }
+  }
+
+  return {
+    apply(changes, state) {
+      const touched = new Set(Object.keys(changes).map((key) => key.split(".")[0]));
+      for (const one of rows) if (touched.has(one.device)) show(one, state);
+      if (changes.steps) active(changes.steps);
+    },
+  };
+};

@@ -1,0 +1,151 @@
+// Run control: back, run or pause, one scan, next step; the clock; the speed; what the run does, in words.
+
+const SPEEDS = [["¼", 0.25], ["½", 0.5], ["1", 1], ["2", 2], ["5", 5], ["10", 10], ["100", 100], ["max", null]];
+const DETENT = (at) => 12 + (180 / (SPEEDS.length - 1)) * at;
+
+panels.transport = (place, layout, page) => {
+  const key = (verb, word, shortcut, glyph, main = "") =>
+    `<button class="keycap ${main}" data-verb="${verb}" data-testid="${verb === "toggle" ? "run" : verb.replace("_", "-")}" data-row="0" tabindex="-1"
+      aria-keyshortcuts="${shortcut}" title="${word} (${shortcut})">${icon(glyph, 18)}<span>${word}</span></button>`;
+  place.innerHTML = `
+    <section class="transport" aria-label="Run control" data-testid="transport">
+      <div class="tgrid">
+        <div class="keys" role="group" aria-label="Run control">
+          ${key("back", "Back", "ArrowLeft", "back")}${key("toggle", "Run", "R", "run", "main")}${key("scan", "One scan", "Space", "scan")}${key("next_step", "Next step", "N", "step")}
+        </div>
+        <div class="clock"><span class="label">simulated time</span><span class="big" data-testid="clock"><span class="whole">0</span><small>.000</small><i>s</i></span></div>
+        <div class="stats">
+          <div class="stat"><span class="label">scan</span><span class="value" data-testid="scans">0</span></div>
+          <div class="stat"><span class="label">scan time</span><span class="value wide"><span class="ms">0.0</span><i>ms</i></span></div>
+          <div class="stat sparkstat"><span class="label">watchdog ${number(layout.watchdog_ms)} ms</span>
+            <svg class="spark" width="88" height="16" viewBox="0 0 88 16" aria-hidden="true"><path class="limit" d="M0 1.5H88"/><path class="bars" d=""/></svg></div>
+        </div>
+        <div class="stat speedstat"><span class="label">speed</span>
+          <div class="speedbar" role="slider" tabindex="0" aria-label="Speed" aria-valuemin="0" aria-valuemax="${SPEEDS.length - 1}" data-testid="speed">
+            <svg class="speed" width="204" height="36" viewBox="0 0 204 36" aria-hidden="true">
+              <path class="track" d="M12 9H192"/><path class="track-on" d=""/>
+              ${SPEEDS.map(([word], at) => `<path class="detent" d="M${DETENT(at)} 5.5v7"/><text x="${DETENT(at)}" y="31" text-anchor="middle">${word}</text>`).join("")}
+              <rect class="thumb" y="1" width="9" height="16" rx="2"/></svg></div></div>
+        <span class="chip" role="status" data-testid="chip"><span class="glyph"></span><span class="cut"></span></span>
+        <div class="below">
+          <button class="tool" data-verb="reset" data-testid="reset" title="Power off and on: time, memory and machine start anew">${icon("reset")}Reset</button>
+          <button class="toggle" role="switch" data-testid="plant" aria-checked="false"><svg class="tog" width="28" height="16" viewBox="0 0 28 16" aria-hidden="true"><rect class="groove" x=".75" y=".75" width="26.5" height="14.5" rx="7.25"/><circle class="dot" cx="8" cy="8" r="4.5"/></svg><span>Machine connected</span></button>
+          <span class="gap"></span>
+          <span class="hints"><kbd>R</kbd> run or pause&ensp;<kbd>Space</kbd> one scan&ensp;<kbd>N</kbd> next step&ensp;<kbd>←</kbd> back</span>
+        </div>
+      </div>
+    </section>`;
+  const find = (selector) => place.querySelector(selector);
+  const [section, chip, slider, plant] = [".transport", ".chip", ".speedbar", ".toggle"].map(find);
+  const keycaps = [...place.querySelectorAll(".keycap")];
+  keycaps.forEach((cap, col) => (cap.dataset.col = col));
+  roving(find(".keys"), () => keycaps.filter((cap) => !cap.disabled));
+
+  let run = {};
+  const press = (verb) => {
+    const cap = find(`[data-verb="${verb}"]`);
+    if (!cap.disabled) page.say("transport", verb === "toggle" ? (run.state === "running" ? "pause" : "run") : verb);
+  };
+  for (const cap of place.querySelectorAll("[data-verb]")) cap.addEventListener("click", () => press(cap.dataset.verb));
+  // Space is one scan anywhere in this panel; Enter presses the key that has the focus.
+  section.addEventListener("keyup", (event) => event.key === " " && event.target !== plant && event.preventDefault());
+  plant.addEventListener("keydown", (event) => event.key === " " && event.stopPropagation());
+  plant.addEventListener("click", () => page.say("transport", "plant", { on: plant.getAttribute("aria-checked") !== "true" }));
+  if (!layout.plant) plant.hidden = true;
+
+  const speedTo = (at) => page.say("transport", "speed", { value: SPEEDS[Math.max(0, Math.min(SPEEDS.length - 1, at))][1] });
+  const detent = () => {
+    const at = SPEEDS.findIndex(([, value]) => value === (run.speed ?? null));
+    return at >= 0 ? at : SPEEDS.findIndex(([, value]) => value === null || value > run.speed) - 0.5;
+  };
+  slider.addEventListener("keydown", (event) => {
+    const at = detent();
+    const to = { ArrowLeft: Math.ceil(at) - 1, ArrowDown: Math.ceil(at) - 1, ArrowRight: Math.floor(at) + 1, ArrowUp: Math.floor(at) + 1, Home: 0, End: SPEEDS.length - 1 }[event.key];
+    if (to === undefined) return;
+    event.preventDefault();
+    event.stopPropagation();
+    speedTo(to);
+  });
+  let asked;
+  const drag = (event) => {
+    const box = slider.firstElementChild.getBoundingClientRect();
+    const at = Math.round((((event.clientX - box.left) * 204) / box.width - 12) / (180 / (SPEEDS.length - 1)));
+    if (at !== asked) speedTo((asked = at));
+  };
+  slider.addEventListener("pointerdown", (event) => {
+    slider.setPointerCapture(event.pointerId);
+    asked = undefined;
+    drag(event);
+  });
+  slider.addEventListener("pointermove", (event) => slider.hasPointerCapture(event.pointerId) && drag(event));
+
+  function say() {
+    const words = {
+      running: ["run", "", run.mode === "RUN" ? "Running" : "Running, PLC in STOP"],
+      paused: ["pause", "", "Paused"],
+      stopped: ["stop", "", "Stopped"],
+      failed: ["cross", "fault", run.error],
+    };
+    let [glyph, kind, text] = words[run.state] ?? words.stopped;
+    if (run.back && run.state === "paused") [glyph, kind, text] = ["back", "past", `${number(run.back)} ${run.back === 1 ? "scan" : "scans"} back`];
+    if (run.fault && run.state !== "failed") [glyph, kind, text] = ["cross", "fault", run.fault];
+    if (run.refused) [glyph, kind, text] = ["cross", "fault", run.refused];
+    if (page.dead) [glyph, kind, text] = ["unplugged", "dead", "Not connected: the last state"];
+    chip.className = `chip ${kind}`;
+    set(chip, "role", kind === "fault" ? "alert" : "status");
+    set(chip, "title", text);
+    const mark = chip.querySelector(".glyph");
+    if (mark.dataset.glyph !== glyph) {
+      mark.dataset.glyph = glyph;
+      mark.innerHTML = icon(glyph, 14);
+    }
+    write(chip.querySelector(".cut"), text ?? "");
+    section.className = `transport ${kind}`;
+    set(section, "data-state", run.state);
+  }
+
+  function keys() {
+    const running = run.state === "running";
+    const over = page.dead || run.state === "failed";
+    const main = find('[data-verb="toggle"]');
+    if (main.dataset.shows !== String(running)) {
+      main.dataset.shows = String(running);
+      main.classList.toggle("lit", running);
+      main.innerHTML = `${icon(running ? "pause" : "run", 18)}<span>${running ? "Pause" : "Run"}</span>`;
+      set(main, "title", `${running ? "Pause" : "Run"} (R)`);
+    }
+    for (const cap of keycaps) cap.disabled = over || (cap !== main && running);
+    find('[data-verb="back"]').disabled ||= run.can_back === false;
+    find('[data-verb="reset"]').disabled = page.dead;
+    for (const node of [plant, slider]) set(node, "aria-disabled", over ? "true" : null);
+  }
+
+  return {
+    press,
+    apply() {},
+    run(now) {
+      run = now;
+      const [whole, part] = seconds(run.time_us ?? 0).split(".");
+      write(find(".whole"), whole);
+      write(find(".clock small"), `.${part}`);
+      write(find('[data-testid="scans"]'), number(run.scan ?? 0));
+      write(find(".ms"), number((run.scan_us ?? 0) / 1000, 1));
+      const bar = (us) => Math.min(12, Math.max(1, (12 * Math.log1p(us / 1000)) / Math.log1p(layout.watchdog_ms || 200)));
+      const bars = (run.recent ?? []).map((us, at) => `M${2 + 3.5 * at} 14v-${bar(us).toFixed(1)}`).join("");
+      set(find(".spark .bars"), "d", bars);
+      const at = detent();
+      set(find(".track-on"), "d", `M12 9H${DETENT(at)}`);
+      set(find(".thumb"), "x", DETENT(at) - 4.5);
+      [...place.querySelectorAll(".speed text")].forEach((text, index) => text.classList.toggle("here", index === at));
+      set(slider, "aria-valuenow", at);
+      set(slider, "aria-valuetext", run.speed === null ? "as fast as possible" : `${run.speed} times real time`);
+      set(plant, "aria-checked", String(Boolean(run.plant)));
+      say();
+      keys();
+    },
+    rest() {
+      say();
+      keys();
+    },
+  };
+};

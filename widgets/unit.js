@@ -1,0 +1,278 @@
+// The unit's face: a switch or button for each input, the window with its lamps, the mode switch, the force plate.
+
+const CAP = {
+  switch: `<svg class="sw slide" width="26" height="46" viewBox="0 0 26 46" aria-hidden="true"><rect class="slot" x="1.5" y="1.5" width="23" height="43" rx="4"/><rect class="lit" x="3" y="22" width="20" height="21" rx="3"/><path class="mark i" d="M13 29v8"/><circle class="mark o" cx="13" cy="13" r="4"/><g class="move"><rect class="cap" x="3.5" y="3.5" width="19" height="20" rx="3"/><path class="grip" d="M8 10.5h10M8 13.5h10M8 16.5h10"/></g></svg>`,
+  push: `<svg class="sw push" width="38" height="38" viewBox="0 0 38 38" aria-hidden="true"><circle class="slot" cx="19" cy="19" r="17"/><circle class="lit" cx="19" cy="19" r="16"/><circle class="cap" cx="19" cy="19" r="12.5"/></svg>`,
+  latch: `<svg class="sw push" width="38" height="38" viewBox="0 0 38 38" aria-hidden="true"><circle class="slot" cx="19" cy="19" r="17"/><circle class="lit" cx="19" cy="19" r="16"/><circle class="cap" cx="19" cy="19" r="12.5"/><path class="mark" d="M19 15.5v7M15.5 22.5h7"/></svg>`,
+  stop: `<svg class="sw push" width="38" height="38" viewBox="0 0 38 38" aria-hidden="true"><circle class="slot" cx="19" cy="19" r="17"/><circle class="lit" cx="19" cy="19" r="16"/><circle class="cap stop" cx="19" cy="19" r="14"/><path class="stop-ring" d="M12.5 19a6.5 6.5 0 0 1 11-4.7m.3-2.6v3h-3M25.5 19a6.5 6.5 0 0 1-11 4.7m-.3 2.6v-3h3"/></svg>`,
+  machine: `<svg class="sw plant" width="38" height="38" viewBox="0 0 38 38" aria-hidden="true"><circle class="ring" cx="19" cy="19" r="15"/><path class="sense" d="M11.5 24.5h15l-7.5-12z"/></svg>`,
+};
+const WORD = {
+  switch: "switch",
+  push: "push button",
+  latch: "latching button",
+  stop: "emergency stop",
+  machine: "driven by the machine",
+  stuck: "taken over by hand, stuck",
+};
+const LAMP = `<svg class="lamp" width="26" height="11" viewBox="0 0 26 11" aria-hidden="true"><rect x="1" y="1" width="24" height="9" rx="2"/><path class="pulse" d="M0.5 10.25h9V.75h7v9.5h9"/></svg>`;
+const SCREW = (at) =>
+  `<svg class="screw" width="14" height="14" viewBox="0 0 14 14" aria-hidden="true"><circle cx="7" cy="7" r="5.5"/><line x1="3" y1="7" x2="11" y2="7" transform="rotate(${((at * 37) % 97) - 45} 7 7)"/></svg>`;
+
+const KNOB = `<svg class="knob" width="124" height="84" viewBox="0 0 124 84" aria-hidden="true"><circle class="skirt" cx="62" cy="50" r="29"/><circle class="body" cx="62" cy="50" r="23"/><line class="tick" x1="36.8" y1="30.3" x2="33.6" y2="27.8"/><text class="t-on" x="32" y="24.6" text-anchor="end">ON</text><line class="tick" x1="87.2" y1="30.3" x2="90.4" y2="27.8"/><text class="t-off" x="92" y="24.6" text-anchor="start">OFF</text><line class="hand" x1="55.7" y1="45.1" x2="47" y2="38.3"/></svg>`;
+
+panels.unit = (place, layout, page, view) => {
+  const { inputs = [], outputs = [], model = "" } = layout;
+  const points = new Map([...inputs, ...outputs].map((point) => [point.device, point]));
+  let state = {};
+  let wide = null;
+  let plate = null;
+
+  const title = (point) => `${point.device} ${point.name}`.trim();
+  const rows = (list, count) => Array.from({ length: Math.ceil(list.length / count) }, (_, at) => list.slice(at * count, at * count + count));
+
+  function build(count) {
+    const screws = (shift) => Array.from({ length: count }, (_, at) => SCREW(at + shift)).join("");
+    let row = 0;
+    const head = (point, at) => `
+      <div class="point${at % 4 === 0 && at ? " group" : ""}" data-point="${point.device}" title="${escaped(point.name.length > 8 ? point.name : point.what)}">
+        <span class="addr">${point.device}</span><span class="name">${escaped(point.name) || "&nbsp;"}</span>`;
+    const ins = rows(inputs, count)
+      .map((list) => {
+        const here = row++;
+        const cells = list.map((point, at) => `${head(point, at)}<button class="control" data-testid="${point.device}" data-row="${here}" data-col="${at}" tabindex="-1"></button></div>`);
+        return `<div class="cols ins">${cells.join("")}</div>`;
+      })
+      .join("");
+    const lamp = (point, here, at) => `
+      <span class="lampcell" role="img" data-testid="lamp-${point.device}" data-lamp="${point.device}" data-row="${here}" data-col="${at}" tabindex="-1">${LAMP}<span class="no">${point.device.slice(1)}</span></span>`;
+    const status = (word, at) => `
+      <span class="lampcell status" role="img" data-testid="${word.toLowerCase()}" data-status="${word}" style="grid-column:${at}"><svg class="lamp" width="14" height="14" viewBox="0 0 14 14" aria-hidden="true"><circle cx="7" cy="7" r="5.5"/></svg><span class="no word">${word}</span></span>`;
+    const window_ = [
+      ...rows(inputs, count).map((list) => ["IN", list, false]),
+      ...rows(outputs, count).map((list, at, all) => ["OUT", list, at === all.length - 1]),
+    ];
+    // The last row of outputs has room for the three lamps, or they take a row of their own.
+    if (window_.at(-1)[1].length > count - 3) {
+      window_.at(-1)[2] = false;
+      window_.push(["", [], true]);
+    }
+    const glass = window_
+      .map(([side, list, last]) => {
+        const here = row++;
+        const lamps = last ? ["RUN", "ERR", "BAT"].map((word, at) => status(word, count - 2 + at)).join("") : "";
+        return `<div class="cols row"><span class="side" aria-hidden="true">${side}</span>${list.map((point, at) => lamp(point, here, at)).join("")}${lamps}</div>`;
+      })
+      .join("");
+    const outRows = rows(outputs, count);
+    if (outRows.at(-1).length > count - 3) outRows.push([]);
+    const outs = outRows
+      .map((list, at) => {
+        const last = at === outRows.length - 1;
+        const knob = last
+          ? `<div class="knobcell" style="grid-column:${count - 2}/${count + 1}" role="radiogroup" aria-label="Mode switch" data-testid="mode">${KNOB}
+              <button class="knobkey on" role="radio" data-mode="RUN" data-row="${row}" data-col="${count - 2}" tabindex="-1">ON</button><button class="knobkey off" role="radio" data-mode="STOP" data-row="${row}" data-col="${count - 1}" tabindex="-1">OFF</button></div>`
+          : "";
+        const brand = last ? `<div class="brand plate"><b>${escaped(model)}</b>${inputs.length} in · ${outputs.length} out</div>` : "";
+        return `<div class="cols outs${last ? " last" : ""}">${list.map((point, col) => `${head(point, col)}</div>`).join("")}${knob}${brand}</div>`;
+      })
+      .join("");
+    place.innerHTML = `
+      <section class="unit" aria-label="${escaped(model)}, inputs and outputs" data-testid="unit" style="--ec-columns:${count}">
+        <div class="cols strip top">${screws(0)}</div>${ins}<div class="glass">${glass}</div>${outs}<div class="cols strip bottom">${screws(5)}</div>
+      </section>`;
+    roving(place.firstElementChild, () => [...place.querySelectorAll("[data-row]")]);
+    for (const button of place.querySelectorAll(".control")) operate(button);
+    for (const cell of place.querySelectorAll(".lampcell[data-lamp]")) cell.addEventListener("click", () => open(cell.dataset.lamp));
+    for (const name of place.querySelectorAll(".point .name, .point .addr")) name.addEventListener("click", () => open(name.parentElement.dataset.point));
+    for (const radio of place.querySelectorAll(".knobkey")) radio.addEventListener("click", () => page.say("unit", "mode", { mode: radio.dataset.mode }));
+    place.firstElementChild.addEventListener("keydown", (event) => {
+      if (event.key === "Enter" && event.target.dataset.lamp) {
+        event.preventDefault();
+        open(event.target.dataset.lamp);
+      }
+      if (event.key === " " && event.target !== event.currentTarget) event.stopPropagation(); // it flips, it is not one scan
+    });
+    show(state);
+  }
+
+  // A control says what the hand did and waits for the unit to tell what came of it.
+  function operate(button) {
+    const device = button.dataset.testid;
+    const tell = (verb, values) => page.say("unit", verb, { device, ...values });
+    const isPush = () => button.dataset.kind === "push";
+    button.addEventListener("click", () => {
+      if (isPush()) return;
+      if (button.dataset.kind === "stuck") tell("free");
+      else tell("set", { on: state[device] ? 0 : 1 });
+    });
+    let held = false;
+    const hold = (down) => {
+      if (down === held || !isPush()) return;
+      held = down;
+      tell(down ? "press" : "release");
+    };
+    button.addEventListener("pointerdown", (event) => {
+      if (event.button) return;
+      button.setPointerCapture(event.pointerId);
+      hold(true);
+    });
+    for (const end of ["pointerup", "pointercancel", "lostpointercapture", "blur"]) button.addEventListener(end, () => hold(false));
+    button.addEventListener("keydown", (event) => isPush() && !event.repeat && (event.key === " " || event.key === "Enter") && hold(true));
+    button.addEventListener("keyup", (event) => isPush() && (event.key === " " || event.key === "Enter") && hold(false));
+    button.addEventListener("contextmenu", (event) => isPush() && event.preventDefault());
+  }
+
+  function control(device) {
+    const button = place.querySelector(`.control[data-testid="${device}"]`);
+    const point = points.get(device);
+    const by = state[`${device}.by`] ?? "hand";
+    const kind = by === "hand" ? point.control : by;
+    const drawn = kind === "stuck" ? "machine" : kind;
+    if (button.dataset.kind !== kind) {
+      button.dataset.kind = kind;
+      if (button.dataset.drawn !== drawn) {
+        button.dataset.drawn = drawn;
+        button.innerHTML = CAP[drawn];
+      }
+      set(button, "role", kind === "push" ? null : "switch");
+      set(button, kind === "push" ? "aria-checked" : "aria-pressed", null);
+      set(button, "aria-label", `${title(point)} ${WORD[kind]}`);
+      set(button, "title", kind === "machine" ? "driven by the machine; press to take it over" : kind === "stuck" ? "stuck; press to give it back to the machine" : null);
+    }
+    set(button, kind === "push" ? "aria-pressed" : "aria-checked", String(Boolean(state[device])));
+  }
+
+  function lampOf(device) {
+    const cell = place.querySelector(`.lampcell[data-lamp="${device}"]`);
+    const on = state[device[0] === "X" ? `${device}.seen` : device];
+    const forced = state[`${device}.forced`];
+    const isForced = forced === 0 || forced === 1;
+    set(cell, "data-on", on ? "" : null);
+    set(cell, "data-forced", isForced ? "" : null);
+    set(place.querySelector(`.point[data-point="${device}"]`), "data-forced", isForced ? "" : null);
+    const badge = cell.querySelector(".f");
+    if (isForced && !badge) cell.insertAdjacentHTML("beforeend", '<span class="badge-f f">F</span>');
+    if (!isForced && badge) badge.remove();
+    set(cell, "aria-label", `${title(points.get(device))} ${on ? "on" : "off"}${isForced ? ", forced" : ""}`);
+  }
+
+  function show(changes) {
+    if (wide === null) return;
+    const touched = new Set(Object.keys(changes).map((key) => key.split(".")[0]));
+    for (const device of touched) {
+      const point = points.get(device);
+      if (!point) continue;
+      if (device[0] === "X") control(device);
+      lampOf(device);
+      if (plate?.device === device) fill();
+    }
+    for (const cell of place.querySelectorAll(".lampcell.status")) {
+      const word = cell.dataset.status;
+      const on = state[word];
+      set(cell, "data-on", on ? (word === "RUN" ? "" : "fault") : null);
+      set(cell, "aria-label", `${word} lamp ${on ? "on" : "off"}`);
+    }
+    for (const radio of place.querySelectorAll(".knobkey")) {
+      const here = (radio.dataset.mode === "RUN") === Boolean(state.RUN);
+      set(radio, "aria-checked", String(here));
+    }
+    set(place.querySelector(".knobcell"), "data-mode", state.RUN ? "RUN" : "STOP");
+  }
+
+  // The plate of a point: what stands at the terminal, what the program sees, and the force that differs from both.
+  function open(device) {
+    const again = plate?.device === device;
+    close();
+    if (again || page.dead) return;
+    const point = points.get(device);
+    const node = document.createElement("div");
+    node.className = "plate-pop";
+    node.dataset.testid = "plate";
+    node.setAttribute("role", "dialog");
+    node.setAttribute("aria-label", title(point));
+    node.innerHTML = `
+      <p><b class="mono">${point.device}</b> ${escaped(point.name)} <span class="dim">${escaped(point.what)}</span></p>
+      <p class="rowline">${device[0] === "X" ? "<span>at the terminal</span><b data-is=terminal></b><span>seen by the program</span><b data-is=seen></b>" : "<span>at the output</span><b data-is=seen></b>"}</p>
+      <p class="acts2"><button class="btn" data-force="0" data-testid="force-off">Force off</button><button class="btn" data-force="1" data-testid="force-on">Force on</button><button class="btn" data-force="" data-testid="release">Release</button></p>`;
+    view.root.append(node);
+    plate = { device, node, back: document.activeElement };
+    const [cell, root] = [place.querySelector(`.lampcell[data-lamp="${device}"]`).getBoundingClientRect(), view.root.getBoundingClientRect()];
+    const zoom = root.width / view.root.offsetWidth || 1;
+    const left = (cell.left + cell.width / 2 - root.left) / zoom - node.offsetWidth / 2;
+    node.style.left = `${Math.max(4, Math.min(left, view.root.offsetWidth - node.offsetWidth - 4))}px`;
+    node.style.top = `${(cell.bottom - root.top) / zoom + 6}px`;
+    for (const button of node.querySelectorAll("[data-force]"))
+      button.addEventListener("click", () => {
+        const force = button.dataset.force;
+        page.say("unit", force === "" ? "release_force" : "force", { device, ...(force === "" ? {} : { on: Number(force) }) });
+      });
+    node.addEventListener("keydown", (event) => {
+      if (event.key === "Escape") close(true);
+      event.stopPropagation();
+    });
+    set(place.querySelector(`.point[data-point="${device}"]`), "data-selected", "");
+    fill();
+    node.querySelector("button").focus({ preventScroll: true });
+  }
+  function fill() {
+    const { device, node } = plate;
+    const forced = state[`${device}.forced`];
+    const isForced = forced === 0 || forced === 1;
+    const seen = node.querySelector("[data-is=seen]");
+    write(seen, isForced ? `F ${forced}` : String(Number(Boolean(state[device[0] === "X" ? `${device}.seen` : device]))));
+    seen.className = isForced ? "fv" : "";
+    const terminal = node.querySelector("[data-is=terminal]");
+    if (terminal) write(terminal, String(Number(Boolean(state[device]))));
+    for (const button of node.querySelectorAll("[data-force]")) {
+      const here = isForced && button.dataset.force === String(forced);
+      button.classList.toggle("force", here);
+      set(button, "aria-pressed", String(here));
+    }
+    node.querySelector('[data-force=""]').disabled = !isForced;
+  }
+  function close(focus) {
+    if (!plate) return;
+    plate.node.remove();
+    set(place.querySelector(`.point[data-point="${plate.device}"]`), "data-selected", null);
+    if (focus) plate.back?.focus({ preventScroll: true });
+    plate = null;
+  }
+  const outside = (event) => plate && !plate.node.contains(event.target) && !event.target.closest("[data-lamp], .name, .addr") && close();
+  document.addEventListener("pointerdown", outside);
+
+  // 16 columns need 816 px; below that the unit takes rows of eight.
+  const sizes = new ResizeObserver(() => {
+    const now = place.clientWidth >= 760;
+    if (!place.clientWidth || now === wide) return;
+    wide = now;
+    close();
+    build(wide ? 16 : 8);
+  });
+  sizes.observe(place);
+
+  return {
+    apply(changes, now) {
+      state = now;
+      show(changes);
+    },
+    pulsed(devices) {
+      for (const device of devices) {
+        const cell = place.querySelector(`.lampcell[data-lamp="${device}"]`);
+        if (!cell) continue;
+        set(cell, "data-pulsed", "");
+        clearTimeout(cell.pulse);
+        cell.pulse = setTimeout(() => set(cell, "data-pulsed", null), HOLD_MS);
+      }
+    },
+    rest(dead) {
+      if (dead) close();
+      for (const button of place.querySelectorAll(".control, .knobkey")) set(button, "aria-disabled", dead ? "true" : null);
+    },
+    close() {
+      document.removeEventListener("pointerdown", outside);
+      sizes.disconnect();
+      close();
+    },
+  };
+};

@@ -1,0 +1,108 @@
+"""The unit's face: inputs as switches and buttons, the window with its lamps, the mode switch, forcing."""
+
+from .history import Pulses
+from .panel import Part
+
+
+PATIENCE_US = 100_000  # a press that no scan sees for so long (a filter, a force) is let go all the same
+
+
+class Unit(Part):
+    """Inputs and outputs of the unit; a control shows the terminal, a lamp what the program sees."""
+
+    key = "unit"
+
+    def __init__(self, rig):
+        super().__init__(rig)
+        self._pressed_us: dict[str, int] = {}
+        self._releases: set[str] = set()
+        self.points = {device: rig.point(device) for device in (*rig.inputs, *rig.outputs)}
+        self._pulses = Pulses()
+        rig.watch.watchers.append(self._watch)
+
+    def layout(self):
+        rows = {device: {"device": device, "name": name, "what": what} for device, (name, what) in self.points.items()}
+        return {
+            "model": self.rig.plc.model.name,
+            "inputs": [rows[device] | {"control": self.rig.controls.get(device, "switch")} for device in self.rig.inputs],
+            "outputs": [rows[device] for device in self.rig.outputs],
+        }
+
+    def frame(self):
+        rig = self.rig
+        entries = dict(rig.status())
+        forced = rig.plc.forced
+        for device in rig.inputs:
+            entries[device] = rig.terminal(device)
+            entries[f"{device}.seen"] = rig.bit(device)
+            entries[f"{device}.by"] = rig.by(device)
+        for device in rig.outputs:
+            entries[device] = rig.bit(device)
+        entries.update((f"{device}.forced", int(forced[device])) for device in self.points if device in forced)
+        return entries
+
+    def pulsed(self):
+        return self._pulses.take(self._on())
+
+    def _on(self):
+        return [device for device in self.points if self.rig.bit(device)]
+
+    def _watch(self):
+        self._pulses.see(self._on())
+        for device in list(self._releases):
+            self._release(device)
+
+    def _device(self, device):
+        if device not in self.points:
+            raise ValueError(f"the unit has no {device!r}")
+        return device
+
+    def _input(self, device):
+        if device not in self.rig.inputs:
+            raise ValueError(f"{device!r} is no input of the unit")
+        return device
+
+    def on_set(self, device, on):
+        """Put an input to 0 or 1; one that the machine drives is taken over."""
+        self.rig.put(self._input(device), int(bool(on)))
+
+    def on_press(self, device):
+        """Hold a push button."""
+        device = self._input(device)
+        self.rig.post(lambda plc: self._press(plc, device))
+
+    def on_release(self, device):
+        """Let a push button go; the program gets at least one look at it, however short the press was."""
+        device = self._input(device)
+        self.rig.post(lambda plc: self._release(device))
+
+    def _press(self, plc, device):
+        plc[device] = 1
+        self._pressed_us[device] = plc.time_us
+        self._releases.discard(device)
+
+    def _release(self, device):
+        plc = self.rig.plc
+        if self.rig.bit(device) or plc.time_us - self._pressed_us.get(device, 0) > PATIENCE_US:
+            plc[device] = 0
+            self._releases.discard(device)
+        else:
+            self._releases.add(device)
+
+    def on_free(self, device):
+        """Give an input back to the machine."""
+        self.rig.free(self._input(device))
+
+    def on_force(self, device, on):
+        """Force a point, whatever terminal and program say."""
+        device = self._device(device)
+        self.rig.post(lambda plc: plc.force(device, int(bool(on))))
+
+    def on_release_force(self, device):
+        """End forcing a point."""
+        device = self._device(device)
+        self.rig.post(lambda plc: plc.unforce(device))
+
+    def on_mode(self, mode):
+        """The mode switch: RUN or STOP."""
+        self.rig.post(lambda plc: plc.run() if mode == "RUN" else plc.stop())
