@@ -34,6 +34,9 @@ class Labels:
     def __init__(self, unit: Unit, program: Program | None = None):
         self.unit, self.program = unit, program
         self.names: dict[str, str] = program.names() if program else {}
+        self.comments = {
+            str(v.device): v.comment for v in (*(program.variables if program else {}).values(), *unit.variables.values()) if v.comment
+        }
         self.locals = {str(variable.device): f"#{variable.name}" for variable in unit.variables.values()}
 
     def of(self, word: Word, place: int) -> Label:
@@ -45,6 +48,11 @@ class Labels:
                 return Label(written, address)
             return Label(self.locals.get(address) or self.names.get(address, ""), address)
         return Label("", address)
+
+    def comment(self, word: Word) -> list[str]:
+        """What the program says about an instruction: the comments of its variables, then its own."""
+        about = [f"{self.of(word, n)}: {self.comments[str(o)]}" for n, o in enumerate(word.operands) if str(o) in self.comments]
+        return [*about, word.comment] if word.comment else about
 
     def contact(self, word: Word) -> Label:
         """The label of a contact of one bit; of a bit in a word "D0.5"."""
@@ -59,7 +67,11 @@ class Labels:
         """What each operand is called in the manual, or in the subroutine that is called."""
         specs = TABLE[word.mnemonic].operands
         roles = [spec.name for spec in specs]
-        callee = next((u for u in self.program.units if u.name == str(word.operands[0])), None) if self.program and len(word.operands) > len(specs) else None
+        callee = (
+            next((u for u in self.program.units if u.name == str(word.operands[0])), None)
+            if self.program and len(word.operands) > len(specs)
+            else None
+        )
         roles += [variable.name for variable in callee.parameters] if callee else []
         return roles + [""] * (len(word.operands) - len(roles))
 
@@ -82,6 +94,8 @@ def reader(operand: Operand, kind: DataType | None, model: Model) -> Reader | No
     """A function that reads an operand's present value from memory; None for what has no value that changes."""
     if not isinstance(operand, Device | Bits) or kind is None:
         return None
+    if operand.area in ("V", "LM"):
+        return lambda memory: None  # a subroutine's own: gone when it has returned
     if operand.index is None:
         return lambda memory: memory.get(operand, kind)
     area, count = operand.area, model.areas[operand.area].count

@@ -64,16 +64,16 @@ class Power:
         self.count += 1
         return self.count - 1
 
-    def solve(self, rail: bool, flow: Sequence[bool | None], closed: Sequence[bool | None]) -> list[bool]:
-        """Which nets carry power."""
+    def solve(self, rail: bool, flow: Sequence[bool | None], closed: Sequence[bool | None], first: int = 0) -> list[bool]:
+        """Which nets carry power; `flow` and `closed` begin with the instruction at position `first`."""
         power = [False] * self.count
         if rail:
             power[RAIL] = True
             for kind, net, sources, position in self.steps:
                 if kind == "contact":
-                    power[net] = power[sources[0]] and bool(closed[position])
+                    power[net] = power[sources[0]] and bool(closed[position - first])
                 elif kind == "gate":
-                    power[net] = power[sources[0]] and bool(flow[position])
+                    power[net] = power[sources[0]] and bool(flow[position - first])
                 else:
                     power[net] = any(power[source] for source in sources)
         return power
@@ -170,7 +170,11 @@ class Layout:
             if isinstance(item, Contact | Gate):
                 _wire(placed, pen, y, x + size.enter, y, net)
                 position = item.word.position
-                after = placed.power.net("contact", (net,), position) if isinstance(item, Contact) else placed.power.net("gate", (base,), position)
+                after = (
+                    placed.power.net("contact", (net,), position)
+                    if isinstance(item, Contact)
+                    else placed.power.net("gate", (base,), position)
+                )
                 placed.symbols.append(Symbol(item, x, y, size, net, after))
                 pen, net = x + size.leave, after
             elif isinstance(item, Block):

@@ -1,0 +1,394 @@
+"""The ladder of a program: every network as a rung, as SVG, as text and with the power flow of a scan."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from ..assembler.program import Network, Program, Unit
+from ..devices import Bits, Device
+from ..instructions import TABLE
+from ..models import Model, get_model
+from . import svg as s
+from . import symbols
+from .labels import COILS, Labels, compares
+from .ladder_live import Live, Picked
+from .ladder_text import draw
+from .layout import Layout, Placed, Size, Symbol
+from .lettering import cut, width
+from .rungs import Gate, Output, Rung, Word, depth, instruction_list, rung, unit_of
+
+# Lengths in px, as the look has them.
+MARGIN, RAIL_STEP, RIGHT_RAIL, EDGE, PLATE = 64, 22, 944, 16, 38
+TITLE_LINE, BUS_ROW, HEAD = 18, 52, 34
+NATURAL, NARROW, WITH_NOTES, NOTES = 960, 700, 1100, 282
+DEEPEST = 80  # a tree nested deeper is listed instead of drawn
+
+
+def ladder(part: Program | Unit | Network, program: Program | None = None) -> Ladder:
+    """The ladder of a program, of one of its units or of one network; for a unit or network the program gives the names."""
+    if isinstance(part, Program):
+        return Ladder(part.units, part)
+    if isinstance(part, Unit):
+        return Ladder([part], program)
+    if program is None:
+        raise TypeError("a network alone does not know its instructions: write ladder(network, program)")
+    unit = unit_of(part, program)
+    whole = Ladder([unit], program)
+    return whole[next(place for place, network in enumerate(unit.networks) if network is part)]
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One network of a ladder; `heading` is what stands over it where a unit begins that is not alone."""
+
+    unit: Unit
+    labels: Labels
+    rung: Rung
+    heading: str = ""
+
+
+class Ladder:
+    """Networks one below the other. A drawing: `svg()` gives the picture at rest, `state(plc)` what changes in it."""
+
+    def __init__(self, units: Sequence[Unit], program: Program | None = None):
+        self.program = program
+        self.model = program.model if program else get_model("EC20")
+        self.entries: list[Entry] = []
+        for unit in units:
+            labels = Labels(unit, program)
+            for place, network in enumerate(unit.networks):
+                self.entries.append(Entry(unit, labels, rung(unit, network), heading(unit) if len(units) > 1 and not place else ""))
+        self._sheets: dict[int | None, Sheet] = {}
+        self._drawn: int | None = None
+
+    def __getitem__(self, which: int | slice) -> Ladder:
+        """Some of the networks, counted from 0 in the order in which they are shown."""
+        part = Ladder([], self.program)
+        part.model = self.model
+        part.entries = self.entries[which] if isinstance(which, slice) else [self.entries[which]]
+        return part
+
+    def __len__(self) -> int:
+        return len(self.entries)
+
+    @property
+    def rungs(self) -> list[Rung]:
+        """The networks as trees."""
+        return [entry.rung for entry in self.entries]
+
+    def instruction_list(self) -> list[Word]:
+        """The instructions that the ladder is drawn from."""
+        return instruction_list(self.rungs)
+
+    def svg(self, prefix: str = "", width: int | None = None) -> str:
+        """The picture at rest, `width` px wide or as much more as the program needs; every id begins with `prefix`."""
+        self._drawn = width
+        return self._sheet().picture(prefix)
+
+    def state(self, moment) -> dict[str, str]:
+        """What changes in the picture last drawn, by "key:attribute"; `moment` is the Plc.
+
+        While the Plc traces, the power of its last scan is shown; else only what contacts, coils and registers hold.
+        """
+        return self._sheet().live.state(moment)
+
+    def _sheet(self) -> Sheet:
+        if self._drawn not in self._sheets:
+            self._sheets[self._drawn] = Sheet(self, self._drawn)
+        return self._sheets[self._drawn]
+
+    def _repr_svg_(self) -> str:
+        return s.standalone(self.svg())
+
+    def __str__(self) -> str:
+        return draw(self)
+
+    def __repr__(self) -> str:
+        return f"<Ladder, {len(self)} network{'s' if len(self) != 1 else ''}>"
+
+
+def heading(unit: Unit) -> str:
+    """A unit's name with what a call gives it, or the event that it serves."""
+    word = {"MAIN": "Main program", "SUBROUTINE": "Subroutine", "INTERRUPT": "Interrupt program"}[unit.kind]
+    name = "" if unit.kind == "MAIN" and unit.name.upper() == "MAIN" else f" {unit.name}"
+    parameters = f" ({', '.join(f'{v.name} : {v.type.name}' for v in unit.parameters)})" if unit.parameters else ""
+    return f"{word}{name}{parameters}" + (f", event {unit.event}" if unit.event is not None else "")
+
+
+@dataclass(frozen=True)
+class Lengths:
+    """The look's lengths for `Layout`: a contact of 16 px in a cell of 112, coils of 28, boxes of 188."""
+
+    labels: Labels
+    cell: float = 112
+    lead: float = 12
+    bar: float = 20
+    drop: float = 28
+    row: float = 64
+    gap: float = 4
+
+    def names(self, word: Word) -> float:
+        """The room above a contact or coil: for name and address, or for the address alone."""
+        return 44 if self.labels.of(word, 0).name else 30
+
+    def contact(self, word: Word) -> Size:
+        if compares(word):
+            box = symbols.compare_width(word)
+            side = 34 if self.cell > 104 else 26
+            values = any(isinstance(operand, Device | Bits) for operand in word.operands)
+            return Size(box + 2 * side, 34, 36 if values else 18, side, side + box)
+        return Size(self.cell, self.names(word), 14, self.cell / 2 - 8, self.cell / 2 + 8)
+
+    def gate(self, word: Word) -> Size:
+        return Size(self.cell, 32, 14, self.cell / 2 - 8, self.cell / 2 + 8)
+
+    def output(self, word: Word) -> Size:
+        if word.mnemonic in COILS:
+            return Size(88, self.names(word), 14, 31, 57)
+        up, height = symbols.box_height(word)
+        return Size(symbols.BOX + EDGE, up, height - up, 0, symbols.BOX)
+
+
+@dataclass(slots=True)
+class Strip:
+    """One network in its place on a sheet; `placed` is None for a row on the bus and for a list."""
+
+    number: int
+    entry: Entry
+    words: list[Word]
+    top: float
+    wire: float  # the height of its first wire
+    height: float
+    left: float  # the rail it hangs on
+    placed: Placed | None
+    rails: tuple[tuple[str, int], ...] = field(default=())  # the regions that draw a rail of their own
+
+
+class Sheet:
+    """A ladder laid out for one width."""
+
+    def __init__(self, ladder: Ladder, asked: int | None):
+        asked = asked or NATURAL
+        self.model: Model = ladder.model
+        self.program = ladder.program
+        self.cell = 104 if asked < NARROW else 112
+        self.layouts = {id(e.labels): Layout(Lengths(e.labels, self.cell)) for e in ladder.entries}
+        with_notes = asked >= WITH_NOTES
+        needed = [
+            MARGIN + RAIL_STEP * len(railed(e.rung)) + self.layouts[id(e.labels)].size(e.rung).width
+            for e in ladder.entries
+            if is_drawn(e.rung)
+        ]
+        self.right = max([min(RIGHT_RAIL, asked - NOTES) if with_notes else asked - EDGE, *needed])
+        self.notes = self.right + 24 if with_notes else 0
+        self.width = max(asked, self.right + (NOTES if with_notes else EDGE))
+        self.strips: list[Strip] = []
+        top = 8.0
+        for number, entry in enumerate(ladder.entries):
+            self.strips.append(self._strip(number, entry, top + (HEAD if entry.heading else 0)))
+            top = self.strips[-1].top + self.strips[-1].height
+        self.height = top + 8
+
+    def _strip(self, number: int, entry: Entry, top: float) -> Strip:
+        rung, words = entry.rung, entry.rung.words
+        titles = rung.title.count("\n") + 1 if rung.title else 0
+        lines = 14 + TITLE_LINE * titles - 10 if titles else 0
+        rails = railed(rung)
+        left = MARGIN + RAIL_STEP * len(rails)
+        placed = None
+        if is_drawn(rung):
+            layout = self.layouts[id(entry.labels)]
+            size = layout.size(rung)
+            wire = max(lines + size.up + 8, 56)
+            height = wire + size.down + 14
+            placed = layout.place(rung, self.right - left)
+        elif is_bus(rung):
+            wire, height = lines + 28, lines + BUS_ROW
+        else:
+            wire = lines + 34
+            height = lines + 36 + symbols.LINE * len(words)
+        if self.notes:
+            height = max(height, 10 + TITLE_LINE * len(remarks(entry)))
+        return Strip(number, entry, words, top, top + wire, height, left, placed, rails)
+
+    @cached_property
+    def rails(self) -> list[tuple[str, int, float, float, float]]:
+        """Each left rail: its key, the position of an instruction that is executed while it is live (-1: the main one), x and its ends."""
+        found = [(f"rail{number}", -1, float(MARGIN), y1, y2) for number, (y1, y2) in enumerate(self.spans())]
+        opened: list[tuple[int, float]] = []  # first position, top
+        for before, strip, after in zip([None, *self.strips], self.strips, [*self.strips[1:], None], strict=False):
+            while len(opened) < len(strip.rails):
+                # A rail begins beside the row that opens it, where that is shown.
+                opened.append((strip.words[0].position, before.wire if before and not strip.entry.heading else strip.top))
+            following = after.rails if after and not after.entry.heading else ()
+            fresh = after is not None and opens(after.entry.rung)
+            while opened and (strip.rails[: len(opened)] != following[: len(opened)] or (fresh and len(opened) > len(following))):
+                first, top = opened.pop()
+                found.append((f"rail{len(found)}", first, float(MARGIN + RAIL_STEP * (len(opened) + 1)), top, strip.top + strip.height - 4))
+        return found
+
+    def spans(self) -> Iterator[tuple[float, float]]:
+        """From where to where the main rails of each unit go."""
+        starts = [n for n, strip in enumerate(self.strips) if strip.entry.heading or n == 0]
+        for start, end in zip(starts, [*starts[1:], len(self.strips)], strict=True):
+            yield self.strips[start].top, self.strips[end - 1].top + self.strips[end - 1].height
+
+    @cached_property
+    def live(self) -> Picked:
+        """What changes in the picture."""
+        return Picked(
+            [Live(strip, self.model) for strip in self.strips], [(key, position) for key, position, *_ in self.rails], self.program
+        )
+
+    # -- the picture --------------------------------------------------------------------------------------------
+
+    def picture(self, prefix: str) -> str:
+        """The root `<svg>` at rest."""
+        parts = [symbols.hatch(prefix), *self._frame(prefix), *(self._draw(strip, prefix) for strip in self.strips)]
+        units = ", ".join(dict.fromkeys(strip.entry.unit.name for strip in self.strips))
+        label = f"Ladder of {units}, {len(self.strips)} network{'s' if len(self.strips) != 1 else ''}"
+        size = {"width": self.width, "height": self.height, "viewBox": f"0 0 {s.number(self.width)} {s.number(self.height)}"}
+        return s.element(
+            "svg", "".join(parts), xmlns="http://www.w3.org/2000/svg", class_="ec ladder", role="img", aria_label=label, **size
+        )
+
+    def _frame(self, prefix: str) -> Iterator[str]:
+        for strip in self.strips[1:]:
+            if not strip.entry.heading:
+                yield f'<path class="hair" d="M0 {s.number(strip.top + 0.5)}H{s.number(self.width)}"/>'
+        for y1, y2 in self.spans():
+            yield f'<path class="rail-right" d="M{s.number(self.right)} {s.number(y1)}V{s.number(y2)}"/>'
+        for key, _, x, y1, y2 in self.rails:
+            yield s.element("path", None, id=f"{prefix}{key}", class_="rail", d=f"M{s.number(x)} {s.number(y1)}V{s.number(y2)}")
+
+    def _draw(self, strip: Strip, prefix: str) -> str:
+        rung, top = strip.entry.rung, strip.top
+        parts = [s.text(18, top - 12, strip.entry.heading, "unit-title")] if strip.entry.heading else []
+        parts.append(s.text(18, top + 14, str(rung.number + 1), "net-no"))
+        for line, words in enumerate(rung.title.split("\n") if rung.title else []):
+            parts.append(s.text(strip.left + 16, top + 14 + TITLE_LINE * line, words, "note" if line else "net-title"))
+        parts.append(s.text(MARGIN - 12, strip.wire + 4, str(strip.words[0].step), "step-no end"))
+        parts.append(self._region(strip, prefix))
+        if strip.placed:
+            parts += [self._symbol(strip, symbol, prefix) for symbol in strip.placed.symbols]
+            parts += self._wires(strip, prefix)
+        else:
+            parts += self._bus(strip, prefix) if is_bus(rung) else self._list(strip)
+        if self.notes:
+            room = self.width - self.notes - 12
+            for line, words in enumerate(remarks(strip.entry)):
+                parts.append(s.text(self.notes, top + 14 + TITLE_LINE * line, cut(words, room), "note" if line else "note note-1"))
+        return s.element("g", "".join(parts), class_="net", data_network=str(rung.number), data_unit=strip.entry.unit.name)
+
+    def _region(self, strip: Strip, prefix: str) -> str:
+        """What encloses the network, in the margin: a step as its box, MC and FOR as a word."""
+        region = strip.entry.rung.region
+        if not region:
+            return ""
+        kind, number = region[-1]
+        if kind != "STL":
+            return s.text(18, strip.top + 32, f"{kind} {number}" if kind == "MC" else kind, "step-no")
+        box = s.element("rect", None, class_="box", x=12, y=strip.top + 21, width=40, height=20, rx=2)
+        return s.element("g", box + s.text(32, strip.top + 35, f"S{number}", "step-id small"), id=f"{prefix}m{strip.number}", class_="step")
+
+    def _wires(self, strip: Strip, prefix: str) -> Iterator[str]:
+        """Two paths for all wires and two for all dots, dead and live."""
+        resting = self.live.strips[strip.number].rest
+        for letter, class_ in (("w", "wire"), ("o", "node"), ("p", "wire on"), ("q", "node on")):
+            key = f"{letter}{strip.number}"
+            yield s.element("path", None, id=prefix + key, class_=class_, d=resting[f"{key}:d"])
+
+    def _symbol(self, strip: Strip, symbol: Symbol, prefix: str) -> str:
+        word, labels = symbol.item.word, strip.entry.labels
+        x, y = strip.left + symbol.x, strip.wire + symbol.y
+        middle = x + symbol.size.width / 2
+        around = middle - 29, y - 46, 58, 64
+        if isinstance(symbol.item, Gate):
+            class_, content = "contact open", symbols.gate(word, middle, y)
+        elif isinstance(symbol.item, Output) and word.mnemonic in COILS:
+            class_, content = "coil open", symbols.coil(word, labels, middle, y, prefix)
+        elif isinstance(symbol.item, Output):
+            class_, content = "fbox open", symbols.box(word, labels, x, y, prefix, self.model)
+            up, height = symbols.box_height(word)
+            around = x - 7, y - up - 5, symbols.BOX + 14, height + 10
+        elif compares(word):
+            box = symbol.size.leave - symbol.size.enter
+            class_, content = "contact open", symbols.compare(word, labels, x + symbol.size.enter, y, box, prefix)
+            around = x + symbol.size.enter - 9, y - 36, box + 18, 72
+        else:
+            class_, content = "contact open", symbols.contact(word, labels, middle, y, self.cell - 6)
+        if symbols.forcible(word):
+            plate, badge = symbols.forced_mark(word.position, *around, prefix)
+            content = plate + content + badge
+        return symbols.group(content, class_, word, labels, prefix)
+
+    def _bus(self, strip: Strip, prefix: str) -> Iterator[str]:
+        """A row of boxes on the bus: STL, RET, MCR, NEXT, LBL."""
+        x, y = strip.left + PLATE, strip.wire
+        yield s.element(
+            "path", None, id=f"{prefix}x{strip.number}", class_="wire", d=f"M{s.number(strip.left)} {s.number(y)}H{s.number(x)}"
+        )
+        for word in strip.words:
+            label = strip.entry.labels.of(word, 0) if word.operands else None
+            if is_step(word):
+                letters, class_, size = label.address, "step", max(58, width(label.address, 13, True) + 16)
+                inside = s.element("rect", None, class_="box", x=x, y=y - 14, width=size, height=28, rx=2) + s.text(
+                    x + size / 2, y + 4.5, letters, "step-id"
+                )
+                yield symbols.group(inside, class_, word, strip.entry.labels, prefix)
+                if label.name:
+                    yield s.text(x + size + 8, y + 4, label.name, "el-name")
+                    size += 8 + width(label.name)
+            else:
+                letters = f"{word.mnemonic} {label.address}" if label else word.mnemonic
+                size = max(84, width(letters, 12, True) + 24)
+                frame = s.element("rect", None, class_="frame", x=x, y=y - 14, width=size, height=28, rx=2)
+                yield symbols.group(frame + s.text(x + 12, y + 4.5, letters, "op"), "fbox open", word, strip.entry.labels, prefix)
+            x += size + 12
+
+    def _list(self, strip: Strip) -> Iterator[str]:
+        """A rung that is nested too deep to be drawn: its instructions."""
+        height = 12 + symbols.LINE * len(strip.words)
+        yield s.element("rect", None, class_="frame", x=strip.left + 16, y=strip.wire - 18, width=240, height=height, rx=2)
+        for line, word in enumerate(strip.words):
+            yield s.text(strip.left + 28, strip.wire + symbols.LINE * line, str(word), "op")
+
+
+# -- what kind of row a rung is ---------------------------------------------------------------------------------
+
+
+def is_bus(rung: Rung) -> bool:
+    """Whether it stands on the left bus without a flow: STL, RET, MCR, NEXT, LBL."""
+    return TABLE[rung.words[0].mnemonic].bus
+
+
+def is_drawn(rung: Rung) -> bool:
+    """Whether it is laid out as contacts and coils."""
+    return not is_bus(rung) and depth(rung.flow) <= DEEPEST
+
+
+def is_step(word: Word) -> bool:
+    """Whether it opens a step."""
+    return bool(word.operands) and TABLE[word.mnemonic].operands[0].kind == "STEP"
+
+
+def opens(rung: Rung) -> bool:
+    """Whether it is the row that opens a step."""
+    return is_step(rung.words[0])
+
+
+def railed(rung: Rung) -> tuple[tuple[str, int], ...]:
+    """The regions around a rung that draw a rail of their own: MC and STL."""
+    return tuple(region for region in rung.region if region[0] != "FOR")
+
+
+def remarks(entry: Entry) -> list[str]:
+    """The comments of a network's instructions, each behind what it speaks of."""
+    found = []
+    for word in entry.rung.words:
+        if word.comment:
+            about = str(entry.labels.of(word, 0)) if word.operands else word.mnemonic
+            found.append(f"{about}: {word.comment}")
+    return found
