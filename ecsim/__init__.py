@@ -2,12 +2,13 @@
 
 from .assembler import Program, assemble
 from .errors import EcsimError, ProgramError
+from .help import help  # noqa: A004 - the public name of the act
 from .plc import Plc, SystemBlock
 from .record import Recording
 from .session import Session
 
 __version__ = "0.1.0"
-__all__ = ["EcsimError", "Plc", "Program", "ProgramError", "Recording", "Session", "SystemBlock", "compile"]
+__all__ = ["EcsimError", "Plc", "Program", "ProgramError", "Recording", "Session", "SystemBlock", "compile", "help"]
 
 
 def compile(text: str, model: str = "EC20") -> Program:  # noqa: A001 - the public name of the act

@@ -1,4 +1,4 @@
-"""The command `ecsim`: check programs, run conformance cases."""
+"""The command `ecsim`: check programs, run conformance cases, tell about instructions."""
 
 import argparse
 import json
@@ -9,6 +9,7 @@ from pathlib import Path
 
 from .assembler import assemble
 from .errors import EcsimError, ProgramError
+from .help import help as help_on
 from .models import MODELS
 from .project import read_project
 from .scenario import load_cases, run_case
@@ -41,6 +42,9 @@ def _parser() -> argparse.ArgumentParser:
     check.add_argument("program", type=Path, metavar="PROGRAM", help="an .il file or a project folder")
     check.add_argument("--model", choices=list(MODELS), help="EC20 unless the project says otherwise")
     check.set_defaults(act=_check)
+    tell = commands.add_parser("help", help="tell about an instruction", description="Tell about an instruction, a section, or list all.")
+    tell.add_argument("name", nargs="?", default="", metavar="NAME", help="an instruction (ADD) or a section of the manual (6.3)")
+    tell.set_defaults(act=_help)
     return parser
 
 
@@ -73,4 +77,9 @@ def _check(options: argparse.Namespace) -> int:
         print(f"{count} error{'s' if count != 1 else ''}")
         return 1
     print(f"{program.model.name}: {program.steps} of {program.model.limits['steps']} steps, no errors")
+    return 0
+
+
+def _help(options: argparse.Namespace) -> int:
+    print(help_on(options.name))
     return 0

@@ -1,4 +1,4 @@
-"""6.16: compare contacts, 54 of them: six comparisons, three types, three ways to join the flow."""
+"""6.16: compare contacts. There are 54 of them: six comparisons, three types, three ways to join the flow."""
 
 from .define import contact
 

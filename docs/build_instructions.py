@@ -1,0 +1,115 @@
+"""Write the pages of docs/instructions and the examples of ecsim.help from TABLE and the conformance cases.
+
+    python docs/build_instructions.py
+
+`ecsim/help_examples.json` holds one case a mnemonic: the manual's worked example first, else the shortest that shows the
+instruction at work. Only a case that passes on all its models and on both engines is taken.
+"""
+
+import json
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from ecsim import help as help_on
+from ecsim.help import EXAMPLES, Page, Section, examples, section_title, sections
+from ecsim.instructions import TABLE
+from ecsim.models import MODELS
+from ecsim.scenario import load_cases, run_case
+
+ROOT = Path(__file__).resolve().parent.parent
+CASES = ROOT / "tests" / "conformance"
+PAGES = ROOT / "docs" / "instructions"
+NOTE = "<!-- Written by docs/build_instructions.py from the table of instructions; do not edit. -->"
+KEPT = ("id", "models", "il", "scan_ms", "system_block", "data_block", "steps", "note")
+
+
+def chosen_examples() -> dict[str, dict[str, Any]]:
+    """For each mnemonic the best of its cases that pass."""
+    candidates: dict[str, list[dict[str, Any]]] = {}
+    for path in sorted(CASES.glob("*.json")):
+        for case in load_cases(path):
+            mnemonic = case["mnemonic"].split()[0]
+            if mnemonic in TABLE and not case.get("compile_error"):
+                candidates.setdefault(mnemonic, []).append(case)
+    found = {}
+    for mnemonic in sorted(candidates):
+        best = next((case for case in sorted(candidates[mnemonic], key=_rank) if _passes(case)), None)
+        if best is not None:
+            found[mnemonic] = {key: best[key] for key in KEPT if key in best}
+    return found
+
+
+def _rank(case: dict[str, Any]) -> tuple:
+    """Cases of the instruction's own section and worked examples first; then cases without an error, on more models, and short ones."""
+    steps = case["steps"]
+    own = case["section"] == TABLE[case["mnemonic"].split()[0]].section
+    size = len(case["il"].split("\n")) + sum(1 + len(step.get("set", ())) + len(step.get("expect", ())) for step in steps)
+    fails = any(step.get("error") for step in steps)
+    shows = any(value for step in steps for value in step.get("expect", {}).values()) and not any("expect_range" in step for step in steps)
+    return not own, ("example", "text", "derived").index(case["source"]), fails, not shows, -len(case["models"]), size, case["id"]
+
+
+def _passes(case: dict[str, Any]) -> bool:
+    return all(run_case(case, model, tracing).passed for model in case["models"] for tracing in (False, True))
+
+
+def examples_text(found: dict[str, dict[str, Any]]) -> str:
+    """The file of examples, a mnemonic a line."""
+    rows = ",\n".join(f"{json.dumps(mnemonic)}: {json.dumps(case, ensure_ascii=False)}" for mnemonic, case in found.items())
+    return f"{{\n{rows}\n}}\n"
+
+
+def pages() -> dict[str, str]:
+    """File name -> text of every page."""
+    found = {f"{section}.md": _section_page(section, names) for section, names in sections().items()}
+    return {"index.md": _index(), **found}
+
+
+def _section_page(section: str, names: Iterable[str]) -> str:
+    head = f"{NOTE}\n\n{Section(section)._repr_markdown_()}\n[All instructions](index.md)\n"
+    return "\n".join([head, *(_deeper(Page(TABLE[name])._repr_markdown_()) for name in names)])
+
+
+def _deeper(text: str) -> str:
+    """A page below a section's heading."""
+    return "#" + text.replace("\n## ", "\n### ")
+
+
+def _index() -> str:
+    lines = [
+        NOTE,
+        "",
+        "# Instructions",
+        "",
+        f'{len(TABLE)} mnemonics, in the order of the manual. In Python `ecsim.help("ADD")` shows the same,',
+    ]
+    lines += ["in a shell `ecsim help ADD`.", "", "| section | about | instructions |", "| --- | --- | --- |"]
+    lines += [f"| [{section}]({section}.md) | {section_title(section)} | {' '.join(names)} |" for section, names in sections().items()]
+    lines += ["", "## Devices", "", f"| area | kind | {' | '.join(MODELS)} |", "| --- | --- |" + " --- |" * len(MODELS)]
+    for name, area in next(iter(MODELS.values())).areas.items():
+        lines.append(f"| {name} | {area.kind} | {' | '.join(model.areas[name].span for model in MODELS.values())} |")
+    lines += [
+        "",
+        "KnX, KnY, KnM and so on are 4n bit devices taken as one number (K4M0); an operand with index may be followed by Z0 to Z15 (D0Z1).",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def main() -> None:
+    """Write the examples, then the pages that show them."""
+    EXAMPLES.write_text(examples_text(chosen_examples()), encoding="utf-8")
+    examples.cache_clear()
+    PAGES.mkdir(exist_ok=True)
+    texts = pages()
+    for path in PAGES.glob("*.md"):
+        if path.name not in texts:
+            path.unlink()
+    for name, text in texts.items():
+        (PAGES / name).write_text(text, encoding="utf-8")
+    print(f"{len(TABLE)} instructions on {len(texts)} pages, {len(examples())} examples")
+    print("without an example:", " ".join(name for name in TABLE if help_on(name).example is None) or "none")
+
+
+if __name__ == "__main__":
+    main()

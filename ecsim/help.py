@@ -1,0 +1,392 @@
+"""Help on instructions: what TABLE, the models and one example tell, as text, Markdown and HTML."""
+
+import html
+import json
+import sys
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from difflib import get_close_matches
+from functools import cache, cached_property
+from pathlib import Path
+from textwrap import wrap
+from types import FunctionType
+from typing import Any
+
+from . import errors
+from .devices import Device
+from .errors import OPERAND, RANGE, EcsimError
+from .hardware.faults import MEANINGS
+from .instructions import TABLE, Definition
+from .instructions.define import BOTH
+from .instructions.signature import OperandSpec
+from .models import MODELS
+
+EXAMPLES = Path(__file__).with_name("help_examples.json")
+WIDTH = 100
+
+_JOINS = {"LD": "a contact that begins a block", "AND": "a contact in series", "OR": "a contact in parallel"}
+_FORMS = {
+    "value": "executed in every scan in which the flow is ON",
+    "command": "executed in every scan in which the flow is ON",
+    "always": "executed in every scan, with the flow ON or OFF",
+    "emitted": "works on the flow of its rung",
+}
+_BUS = "stands on the left bus, without a contact before it"
+_USES = {(True, False): "read", (False, True): "written", (True, True): "read and written"}
+_ERROR_NAMES = {name for name, code in vars(errors).items() if isinstance(code, int)}
+
+
+# -- what is told ---------------------------------------------------------------------------------------------------
+
+
+def fault_codes(definition: Definition) -> dict[int, str]:
+    """The execution errors that an instruction can end with -> where they come from, as far as its row and its function tell."""
+    codes = dict.fromkeys(definition.faults, "")
+    codes |= dict.fromkeys(_raised(definition.function, set()), "")
+    if any(spec.span for spec in definition.operands):
+        codes.setdefault(OPERAND, "a number of elements below zero")
+        codes.setdefault(RANGE, "elements beyond the last device")
+    if any(spec.indexed for spec in definition.operands):
+        codes.setdefault(RANGE, "an index that leads beyond the devices")
+    return dict(sorted(codes.items()))
+
+
+def _raised(function: FunctionType, seen: set) -> set[int]:
+    """The error codes that a function, and what it calls of the chapter's own functions, speaks of."""
+    seen.add(function)
+    found: set[int] = set()
+    for name in function.__code__.co_names:
+        what = function.__globals__.get(name)
+        if name in _ERROR_NAMES and isinstance(what, int):
+            found.add(what)
+        elif isinstance(what, FunctionType) and what not in seen and ".instructions." in what.__module__:
+            found |= _raised(what, seen)
+    return found
+
+
+def section_of(definition: Definition) -> str:
+    """The section of the manual that holds an instruction: "6.3" for one of 6.3.1."""
+    return ".".join(definition.section.split(".")[:2])
+
+
+def section_title(section: str) -> str:
+    """What a section is about, from the first line of its module."""
+    heads = {
+        (sys.modules[row.function.__module__].__doc__ or "").strip().split("\n")[0] for row in TABLE.values() if section_of(row) == section
+    }
+    head = next((head for head in sorted(heads) if head.startswith(f"{section}:")), f"{section}: instructions")
+    title = head.removeprefix(f"{section}:").strip().split(". ")[0].rstrip(".")
+    return title[:1].upper() + title[1:]
+
+
+def sections() -> dict[str, list[str]]:
+    """Section -> its mnemonics, both in the manual's order."""
+
+    def order(text: str) -> list[int]:
+        return [int(part) for part in text.split(".")]
+
+    found: dict[str, list[str]] = {}
+    for row in sorted(TABLE.values(), key=lambda row: order(row.section)):
+        found.setdefault(section_of(row), []).append(row.mnemonic)
+    return found
+
+
+@cache
+def examples() -> dict[str, dict[str, Any]]:
+    """One conformance case a mnemonic."""
+    return json.loads(EXAMPLES.read_text(encoding="utf-8"))
+
+
+# -- the parts of a page, in three writings ---------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Heading:
+    """A line above what follows; `level` 1 stands for the instruction."""
+
+    words: str
+    level: int = 2
+
+    def text(self) -> str:
+        return self.words if self.level == 1 else f"{self.words}:"
+
+    def markdown(self) -> str:
+        return f"{'#' * self.level} {self.words}"
+
+    def html(self) -> str:
+        return f"<h{self.level + 2}>{html.escape(self.words)}</h{self.level + 2}>"
+
+
+@dataclass(frozen=True)
+class Words:
+    """A paragraph."""
+
+    words: str
+
+    def text(self) -> str:
+        return "\n".join(wrap(self.words, WIDTH))
+
+    def markdown(self) -> str:
+        return self.words
+
+    def html(self) -> str:
+        return f"<p>{html.escape(self.words)}</p>"
+
+
+@dataclass(frozen=True)
+class Items:
+    """Short lines one below the other."""
+
+    lines: tuple[str, ...]
+
+    def text(self) -> str:
+        return "\n".join("\n".join(wrap(line, WIDTH, initial_indent="  ", subsequent_indent="    ")) for line in self.lines)
+
+    def markdown(self) -> str:
+        return "\n".join(f"- {line}" for line in self.lines)
+
+    def html(self) -> str:
+        return f"<ul>{''.join(f'<li>{html.escape(line)}</li>' for line in self.lines)}</ul>"
+
+
+@dataclass(frozen=True)
+class Rows:
+    """A table with a line of titles."""
+
+    titles: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+    def text(self) -> str:
+        rows = [self.titles, *self.rows]
+        widths = [max(len(row[place]) for row in rows) for place in range(len(self.titles))]
+        return "\n".join(("  " + "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True))).rstrip() for row in rows)
+
+    def markdown(self) -> str:
+        rows = [self.titles, ("---",) * len(self.titles), *self.rows]
+        return "\n".join(f"| {' | '.join(row)} |" for row in rows)
+
+    def html(self) -> str:
+        def line(tag: str, cells: Iterable[str]) -> str:
+            return "".join(["<tr>", *(f'<{tag} style="text-align:left">{html.escape(cell)}</{tag}>' for cell in cells), "</tr>"])
+
+        return f"<table>{line('th', self.titles)}{''.join(line('td', row) for row in self.rows)}</table>"
+
+
+@dataclass(frozen=True)
+class Code:
+    """A program."""
+
+    program: str
+
+    def text(self) -> str:
+        return "\n".join(f"    {line}".rstrip() for line in self.program.split("\n"))
+
+    def markdown(self) -> str:
+        return f"```text\n{self.program}\n```"
+
+    def html(self) -> str:
+        return f"<pre>{html.escape(self.program)}</pre>"
+
+
+Part = Heading | Words | Items | Rows | Code
+
+
+class Shown:
+    """A page made of parts: `str()` is its text, a notebook shows its HTML."""
+
+    parts: tuple[Part, ...]
+
+    def __str__(self) -> str:
+        return "\n\n".join(part.text() for part in self.parts).replace(":\n\n", ":\n")
+
+    def _repr_markdown_(self) -> str:
+        return "\n\n".join(part.markdown() for part in self.parts) + "\n"
+
+    def _repr_html_(self) -> str:
+        return f"<div>{''.join(part.html() for part in self.parts)}</div>"
+
+
+# -- one instruction ----------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, repr=False)
+class Page(Shown):
+    """All about one instruction."""
+
+    definition: Definition
+
+    def __repr__(self) -> str:
+        return f"<help on {self.definition.mnemonic}: {self.definition.title}>"
+
+    @property
+    def example(self) -> dict[str, Any] | None:
+        """The conformance case that serves as example, None where there is none."""
+        return examples().get(self.definition.mnemonic)
+
+    @cached_property
+    def parts(self) -> tuple[Part, ...]:
+        row = self.definition
+        first, *more = (row.function.__doc__ or "").strip().split("\n\n")
+        found: list[Part] = [Heading(row.mnemonic, 1), Words(" ".join(first.split()))]
+        found += [Words(" ".join(paragraph.split())) for paragraph in more]
+        found += [Code(" ".join([row.mnemonic, *(spec.name for spec in row.operands)])), Items(self._facts())]
+        if row.operands:
+            found += [Heading("Operands"), Rows(("operand", "use", "type", "index", "devices", "remark"), self._operands())]
+        if row.flags:
+            found += [Heading("Flags"), Items(self._flags())]
+        codes = fault_codes(row)
+        if codes:
+            found += [Heading("Errors"), Items(tuple(self._error(code, where) for code, where in codes.items()))]
+        return (*found, *self._example())
+
+    def _facts(self) -> tuple[str, ...]:
+        row = self.definition
+        form = _JOINS[row.join] if row.join else _BUS if row.bus else _FORMS[row.form]
+        steps = "3 and one for each operand" if row.steps is None else str(row.steps)
+        if row.transition_steps:
+            steps += f"; {row.transition_steps} for a step device inside a step"
+        facts = [
+            f"manual {row.section}, {section_title(section_of(row)).lower()}",
+            f"models: {', '.join(row.models)}",
+            f"steps: {steps}",
+            form,
+        ]
+        if row.cleared:
+            facts.append("cleared when its master control is OFF and when its step has been left")
+        family = [other.mnemonic for other in TABLE.values() if other.function is row.function and other is not row]
+        return (*facts, *([f"relatives with the same meaning: {', '.join(family)}"] if family else []))
+
+    def _operands(self) -> tuple[tuple[str, ...], ...]:
+        return tuple(
+            (spec.name, _USES[spec.read, spec.written], spec.type.name, "yes" if spec.indexed else "no", _devices(spec), _remark(spec))
+            for spec in self.definition.operands
+        )
+
+    def _flags(self) -> tuple[str, ...]:
+        model = MODELS[self.definition.models[0]]
+        flags = ("{} ({}{})".format(flag, *model.flag(flag)) for flag in self.definition.flags)
+        return (f"{', '.join(flags)}: set or cleared by each execution",)
+
+    @staticmethod
+    def _error(code: int, where: str) -> str:
+        return f"{code}: {MEANINGS.get(code, 'an error')}" + (f" ({where})" if where else "")
+
+    def _example(self) -> list[Part]:
+        case = self.example
+        if case is None:
+            return []
+        return [Heading("Example"), Words(_sentence(case["note"])), Code(case["il"].strip("\n")), Items(tuple(_story(case)))]
+
+
+def _devices(spec: OperandSpec) -> str:
+    names = {"const": "constant", "routine": "name of a subroutine"}
+    return " ".join(names.get(area, area) for area in spec.order)
+
+
+def _remark(spec: OperandSpec) -> str:
+    remarks = []
+    if spec.range:
+        area = "" if "const" in spec.areas else spec.order[0]
+        remarks.append(f"{area}{spec.range[0]} to {area}{spec.range[1]}")
+    if spec.span:
+        remarks.append(f"the first of {spec.span}")
+    return ", ".join(remarks)
+
+
+def _sentence(text: str) -> str:
+    return text[:1].upper() + text[1:].rstrip(".") + "."
+
+
+def _story(case: dict[str, Any]) -> Iterable[str]:
+    """The steps of a case, a line each: what is set, how long it runs, what comes out."""
+    if case["models"] != list(BOTH):
+        yield f"on {' and '.join(case['models'])}"
+    if case.get("scan_ms", 10) != 10:
+        yield f"a scan takes {case['scan_ms']} ms"
+    for what in ("system_block", "data_block"):
+        if what in case:
+            yield f"{what.replace('_', ' ')}: {_settings(case[what])}"
+    for step in case["steps"]:
+        before = (
+            [{"run": "STOP to RUN", "stop": "RUN to STOP", "power_cycle": "power off and on"}[step["action"]]] if "action" in step else []
+        )
+        before += [_settings(step["set"])] if step.get("set") else []
+        before += [f"{_settings(step[signal])} ({signal})" for signal in ("pulses", "quadrature") if signal in step]
+        time = f"after {step['ms']:g} ms" if "ms" in step else _scans(step.get("scans", 0))
+        after = [_settings(step["expect"])] if step.get("expect") else []
+        after += [f"{name} from {limits['min']} to {limits['max']}" for name, limits in step.get("expect_range", {}).items()]
+        after += [f"error {step['error']} in SD20" if step["error"] else "no error in SD20"] if "error" in step else []
+        yield f"{'; '.join([*before, time])}: {', '.join(after)}" if after else "; ".join([*before, time])
+
+
+def _scans(count: int) -> str:
+    return "at once" if count == 0 else "after 1 scan" if count == 1 else f"after {count} scans"
+
+
+def _settings(values: dict[str, Any]) -> str:
+    """Devices and their values; neighbours of one value as "M0 to M9 = 1"."""
+    runs: list[tuple[str, str, int, Any]] = []  # first and last name, how many, their value
+    following = ""
+    for name, value in values.items():
+        if runs and name == following and runs[-1][3] == value:
+            runs[-1] = (runs[-1][0], name, runs[-1][2] + 1, value)
+        else:
+            runs.append((name, name, 1, value))
+        following = _next_name(name)
+    words = []
+    for first, last, count, value in runs:
+        names = first if count == 1 else f"{first} {'and' if count == 2 else 'to'} {last}"
+        words.append(f"{names} = {value:.7g}" if isinstance(value, float) else f"{names} = {value}")
+    return ", ".join(words)
+
+
+def _next_name(name: str) -> str:
+    """The name of a device's neighbour, empty where the text names no plain device."""
+    device = MODELS["EC20"].syntax.parse(name)
+    return str(replace(device, number=device.number + 1)) if isinstance(device, Device) else ""
+
+
+# -- all of them --------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, repr=False)
+class Section(Shown):
+    """The instructions of one section of the manual."""
+
+    name: str
+
+    def __repr__(self) -> str:
+        return f"<help on {self.name}: {len(sections()[self.name])} instructions>"
+
+    @cached_property
+    def parts(self) -> tuple[Part, ...]:
+        rows = tuple((name, TABLE[name].title) for name in sections()[self.name])
+        return Heading(f"{self.name} {section_title(self.name)}", 1), Rows(("instruction", "what it does"), rows)
+
+
+class Contents(Shown):
+    """All instructions by section."""
+
+    def __repr__(self) -> str:
+        return f"<help on {len(TABLE)} instructions in {len(sections())} sections>"
+
+    @cached_property
+    def parts(self) -> tuple[Part, ...]:
+        found: list[Part] = [Heading("Instructions", 1)]
+        for section, names in sections().items():
+            found += [Heading(f"{section} {section_title(section)}", 2), Words(" ".join(names))]
+        return tuple(found)
+
+
+def help(name: str = "") -> Page | Section | Contents:  # noqa: A001 - the public name of the act
+    """The page of an instruction ("ADD"), the list of a section ("6.3"), or of all; raises EcsimError for what there is not."""
+    wanted = name.strip().upper()
+    if not wanted:
+        return Contents()
+    if wanted in TABLE:
+        return Page(TABLE[wanted])
+    if wanted in sections():
+        return Section(wanted)
+    close = get_close_matches(wanted[:12], TABLE, 3, 0.6)
+    hint = f"did you mean {' or '.join(close)}?" if close else "ecsim.help() lists all"
+    raise EcsimError(f"there is no instruction {name[:40]!r}; {hint}")
