@@ -6,9 +6,10 @@ The lists keep their identity for as long as nothing is forced, so that generate
 """
 
 from collections.abc import Container
+from dataclasses import replace
 
 from .devices import Bits, Constant, Device
-from .errors import EcsimError
+from .errors import RANGE, EcsimError, Fault
 from .models import Area, Model
 from .values import BOOL, DINT, INT, REAL, TYPES, DataType, join, real_from_words, signed16, split, words_from_real, wrap
 
@@ -151,6 +152,14 @@ class Memory:
     def bits(self, area: str) -> list:
         """The list of an area's bits; of T and C the contacts."""
         return self.lists[f"{area}B"] if area in ("T", "C") else self.lists[area]
+
+    def placed(self, operand: Device | Bits, index: int, length: int) -> Device | Bits:
+        """An indexed operand as the device that it stands for now, of `length` elements; beyond its area it is Fault(65)."""
+        moved = replace(operand, number=operand.number + index, index=None)
+        span = 4 * operand.digits if isinstance(operand, Bits) else length
+        if not 0 <= moved.number <= len(self.lists[operand.area]) - span:
+            raise Fault(RANGE)
+        return moved
 
     # -- forcing ------------------------------------------------------------------------------------------------
 

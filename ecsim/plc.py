@@ -107,6 +107,8 @@ class Plc:
             "fault": self.faults.note,
             "executed": self.faults.executed,
             "spend": self._spend,
+            "release": self.release,
+            "placed": self.memory.placed,
             "machine": self,
         }
         self._init_special(power_up=True)
@@ -199,10 +201,10 @@ class Plc:
         if self.system_error in STOPPING and self.system_error >= 60:
             self.system_error = 0
         self._initialise(hold=self.system.hold_values)
-        self._init_special(power_up=bool(self._special[0][self.model.relays["power up"]]))
-        relays, registers = self._special
-        relays[self.model.relays["running"]] = relays[self.model.relays["first scan"]] = True
-        registers[self.model.registers["least scan time"]] = 0
+        self._init_special(power_up="power up" in self.model.relays and bool(self._special[0][self.model.relays["power up"]]))
+        self._tell("running", True)
+        self._tell("first scan", True)
+        self._special[1][self.model.registers["least scan time"]] = 0
         self.memory.slots(self.program.slots)
         self.clocks.restart(self.clock[0])
         self.timers.restart()
@@ -214,7 +216,7 @@ class Plc:
         if not self.running:
             return
         self.running = False
-        self._special[0][self.model.relays["running"]] = False
+        self._tell("running", False)
         if self.system.stop_outputs == "freeze":
             return
         self.memory.clear("Y")
@@ -243,8 +245,8 @@ class Plc:
         }
         if not hold:
             for area in self.model.areas:
-                if area not in ("X", self.model.special_bits, self.model.special_words):
-                    self.memory.clear(area, retained.get(area, frozenset()))
+                if area != "X":
+                    self.memory.clear(area, retained.get(area, frozenset()).union(self.model.special(area)))
         for part in ("DUE", "REST"):
             values = self.memory.lists[part]
             values[:] = [0] * len(values)
@@ -257,10 +259,10 @@ class Plc:
     def _init_special(self, power_up: bool) -> None:
         """SM and SD at their initial values but for the pulse counts SD50 to SD55 (appendix 2)."""
         model = self.model
-        relays, registers = self.memory.lists[model.special_bits], self.memory.lists[model.special_words]
+        registers = self.memory.lists[model.special_words]
         pulses = registers[50:56]
-        self.memory.clear(model.special_bits)
-        self.memory.clear(model.special_words)
+        for area in (model.special_bits, model.special_words):
+            self.memory.clear(area, range(model.first_special))
         registers[50:56] = pulses
         numbers = model.registers
         values = {
@@ -268,12 +270,18 @@ class Plc:
             "watchdog": self.system.watchdog_ms, "constant scan": self.system.constant_scan_ms, "input filter": self.inputs.filter_us // 1000,
         }  # fmt: skip
         for meaning, value in values.items():
-            registers[numbers[meaning]] = value
+            if meaning in numbers:
+                registers[numbers[meaning]] = value
         for number, value in model.initial_registers.items():
             registers[number] = value
-        relays[model.relays["power up"]] = power_up
-        relays[model.relays["constant scan"]] = self.system.constant_scan_ms > 0
-        relays[model.relays["system error"]] = self.system_error != 0
+        self._tell("power up", power_up)
+        self._tell("constant scan", self.system.constant_scan_ms > 0)
+        self._tell("system error", self.system_error != 0)
+
+    def _tell(self, meaning: str, on: bool) -> None:
+        """Turn a special relay ON or OFF by its meaning, if the model has one for it."""
+        if meaning in self.model.relays:
+            self.memory.lists[self.model.special_bits][self.model.relays[meaning]] = on
 
     # -- time ---------------------------------------------------------------------------------------------------
 
@@ -336,11 +344,11 @@ class Plc:
 
     def _housekeeping(self, period_us: int) -> None:
         """After the program: first-scan relays go OFF, scan times are noted."""
-        relays, registers = self._special
-        numbers = self.model.registers
+        registers, numbers = self._special[1], self.model.registers
         if self._first:
             self._first = False
-            relays[self.model.relays["first scan"]] = relays[self.model.relays["power up"]] = False
+            self._tell("first scan", False)
+            self._tell("power up", False)
         self._noted_us = period_us
         period = (period_us + 500) // 1000
         registers[numbers["scan time"]] = period
@@ -363,9 +371,9 @@ class Plc:
 
     def _interrupt(self, routine: str) -> None:
         lists = self.memory.lists
-        frame = lists["LM"][:], lists["V"][:]
-        self.memory.clear("LM")
-        self.memory.clear("V")
+        frame = [lists[area][:] for area in self.model.local_areas]
+        for area in self.model.local_areas:
+            self.memory.clear(area)
         self.timers.advance()
         try:
             if self._engine.run(routine):
@@ -374,13 +382,17 @@ class Plc:
             self._stop_with(WATCHDOG)
         except Exception as error:
             raise self._our_bug(error) from error
-        lists["LM"][:], lists["V"][:] = frame
+        for area, values in zip(self.model.local_areas, frame, strict=True):
+            lists[area][:] = values
 
     def _spend(self, steps: int) -> None:
         """A loop or a jump back executes `steps` once more; the watchdog looks at the sum (decision on 2.1.2)."""
         self._spent_ns += max(1, steps) * self.model.instruction_ns
         if self._spent_ns > self.system.watchdog_ms * 1_000_000 > 0:
             raise Overrun
+
+    def release(self, claim: int) -> None:
+        """The flow of a command has gone, or its MC or step has been left: what it held is given back."""
 
     def watchdog_reset(self) -> None:
         """WDT: the program's time counts from zero again."""
@@ -392,9 +404,8 @@ class Plc:
         self.faults.note(code)
         self.system_error = code
         self.stop()
-        relays, registers = self._special
-        relays[self.model.relays["system error"]] = True
-        registers[self.model.registers["system error"]] = code
+        self._tell("system error", True)
+        self._special[1][self.model.registers["system error"]] = code
 
     def _our_bug(self, error: Exception) -> Exception:
         line = 0

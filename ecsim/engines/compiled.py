@@ -179,7 +179,7 @@ class _Rung:
         form, definition = instruction.definition.form, instruction.definition
         if form == "contact":
             self._contact(instruction)
-        elif "flow" in definition.taken and (definition.assigns or definition.after):
+        elif definition.told:
             self.lines += self.c.value(instruction, self._told().text)
         elif form in ("value", "command"):
             self._when(self.c.value(instruction))

@@ -210,7 +210,7 @@ class _Builder(Writer):
         definition = instruction.definition
         if definition.form == "contact":
             self._contact(instruction)
-        elif "flow" in definition.taken and (definition.assigns or definition.after):
+        elif definition.told:
             self._op([*self.value(instruction, "flow"), "return flow"])
         elif definition.form in ("value", "command"):
             self._when(self.value(instruction))

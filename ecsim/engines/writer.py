@@ -107,7 +107,7 @@ class Writer:
 
     def _special(self, instruction: Instruction, word: str, flow: str) -> str:
         """What a function gets that is no operand."""
-        known = {"flow": flow, "machine": "machine", "now": "CLOCK[0]", "state": f"E[{instruction.slot}]"}
+        known = {"flow": flow, "machine": "machine", "now": "CLOCK[0]", "state": f"E[{instruction.slot}]", "claim": str(instruction.slot)}
         return known.get(word) or "{}[{}]".format(*self.model.flag(word))
 
     @staticmethod
@@ -119,9 +119,22 @@ class Writer:
         return f"if {f'{flow} and ' if flow else ''}not {test}: raise Fault({OPERAND})"
 
     def _load(self, instruction: Instruction, spec: OperandSpec, operand: Operand) -> str:
+        if spec.unit:
+            return self._unit(spec, operand)
         if spec.span is None:
             return self.access.load(spec.type, operand)
         return self.access.load_span(spec.type, operand, self._count(instruction, spec))
+
+    def _unit(self, spec: OperandSpec, operand: Operand) -> str:
+        """What a command gets of a device that it works on: the device itself, or the number of a counter, pulse output or table."""
+        if spec.kind == "BLOCK" and not (isinstance(operand, Device) and operand.area == "D"):
+            return self.access.load(spec.type, operand)
+        if spec.kind not in ("POINT", "PLACE", "DPLACE"):
+            return self.access.index(operand) if operand.index is not None else str(operand.number)
+        name = f"place_{len(self.globals)}"
+        self.globals[name] = operand
+        length = spec.span or (spec.type.words if operand.area not in ("T", "C") else 1) or 1
+        return name if operand.index is None else f"placed({name}, {operand.index_area}[{operand.index}], {length})"
 
     def _count(self, instruction: Instruction, spec: OperandSpec) -> str:
         """The length of a span as an expression."""
@@ -170,9 +183,21 @@ class Writer:
     def value(self, instruction: Instruction, flow: str = "True") -> list[str]:
         """The statements of an instruction that gives values; `flow` is the flow for one that is told of it."""
         definition = instruction.definition
+        if definition.claims:
+            return self._claimed(instruction, flow)
         after = (f"if not {flow}: E[{instruction.slot}] = False",) if definition.after else ()
         lines = self.guarded(instruction, self.result_lines(instruction, flow), after)
         return [f"if {flow} or E[{instruction.slot}]:", *indented(lines)] if definition.after else lines
+
+    def _claimed(self, instruction: Instruction, flow: str) -> list[str]:
+        """The statements of a command that holds something while its flow is ON, and gives it back afterwards."""
+        held = f"E[{instruction.slot}]"
+        work = [f"{held} = True", *self.guarded(instruction, self.result_lines(instruction, flow))]
+        return [f"if {flow}:", *indented(work), f"elif {held}:", *indented(self._release(instruction))]
+
+    @staticmethod
+    def _release(instruction: Instruction) -> list[str]:
+        return [f"E[{instruction.slot}] = False", f"release({instruction.slot})"]
 
     def result_lines(self, instruction: Instruction, flow: str) -> list[str]:
         """Load, compute, store, without what an execution error does."""
@@ -184,7 +209,8 @@ class Writer:
         else:
             self.globals.update(pattern.globals)
             result = pattern.fill(fields)
-        targets = [(spec, operand) for spec, operand in zip(definition.operands, instruction.operands, strict=True) if spec.written]
+        pairs = zip(definition.operands, instruction.operands, strict=True)
+        targets = [(spec, operand) for spec, operand in pairs if spec.written and not spec.unit]
         if len(targets) == 1 and not definition.given:
             lines += self._one_result(instruction, *targets[0], result, pattern)
         else:
@@ -330,10 +356,21 @@ class Writer:
         if definition.assigns:  # the bit of a word: executed without flow; one that cannot be reached needs no clearing
             lines = self.result_lines(instruction, "False")
             return [("try:", *indented(lines), "except Fault:", f"{INDENT}pass") if self._may_fault(instruction) else (*lines,)]
+        if definition.claims:
+            return [(f"if E[{instruction.slot}]:", *indented(self._release(instruction))), *self._unit_erasures(instruction)]
         devices = [operand for spec, operand in zip(definition.operands, instruction.operands, strict=True) if spec.written]
         if definition.form == "always":
             return [(*self.access.reset(device),) for device in devices]
         return [(*self.access.store(BOOL, device, "False"),) for device in devices]
+
+    def _unit_erasures(self, instruction: Instruction) -> Iterator[tuple[str, ...]]:
+        """The statements that clear the destinations of a command: a counter with its contact, bits, registers."""
+        for spec, operand in zip(instruction.definition.operands, instruction.operands, strict=True):
+            if spec.written and spec.kind == "HCOUNTER":
+                yield (*self.access.reset(operand),)
+            elif spec.written and operand.index is None:
+                zeros = "[False]" if spec.type is BOOL else "[0]"
+                yield (*self.access.store_span(spec.type, operand, f"{zeros} * {spec.span or 1}", resets=True),)
 
     def enter_lines(self, callee: Unit, arguments: tuple[Operand, ...]) -> list[str]:
         """A call's beginning: the caller's LM and V put aside, the callee's cleared and loaded (3.1.12, 4.4.3)."""

@@ -44,6 +44,7 @@ class Definition:
     faults: tuple[int, ...] = ()
     check: Callable | None = None  # (values of the constant operands) -> what is wrong with them, or None
     counted: str | None = None  # which of the model's limits a program's instructions of this kind count towards
+    occupies: Callable | None = None  # (model, operands) -> the numbers of the inputs X0 to X7 that it needs for itself (8.5)
 
     @property
     def title(self) -> str:
@@ -53,12 +54,22 @@ class Definition:
     @property
     def keeps(self) -> bool:
         """Whether it remembers something from one execution to the next, in a slot of the memory's list E."""
-        return "state" in self.taken or self.after
+        return "state" in self.taken or self.after or self.claims
+
+    @property
+    def claims(self) -> bool:
+        """Whether a command holds something under a number, to be released when its flow has gone."""
+        return "claim" in self.taken
 
     @property
     def after(self) -> bool:
         """Whether a command is called once more when its flow has gone."""
         return self.form == "command" and "flow" in self.taken
+
+    @property
+    def told(self) -> bool:
+        """Whether it is written with its flow, and not only executed while that is ON."""
+        return self.claims or ("flow" in self.taken and (self.assigns or self.after))
 
     @property
     def assigns(self) -> bool:
@@ -112,6 +123,7 @@ def command(mnemonic: str, signature: str, *, steps: int, section: str, **column
     """The function acts on the machine while the flow is ON; one that gets `flow` is called once more, with OFF, when the flow has gone.
 
     It may have destinations and state as a value instruction has; with `flow` the state is what is true while it is at work.
+    One that takes a `claim` is called while the flow is ON; `machine.release(claim)` follows when it has gone.
     """
     return _define("command", mnemonic, signature, steps, section, **columns)
 

@@ -14,7 +14,8 @@ left. After the type may follow, in this order:
 
 A word in small letters is no operand. Left of the arrow it is something else that the function is given, right of it
 something that the function gives after its values: a flag by its meaning (carry), `state`, which the instruction keeps
-from one execution to the next (False at first), or `now`, the simulated time in microseconds.
+from one execution to the next (False at first), `now`, the simulated time in microseconds, or `claim`, the number under
+which a command holds something until its flow goes.
 """
 
 import re
@@ -52,7 +53,16 @@ SPECIAL: dict[str, tuple[DataType, str, tuple[int, int] | None]] = {
     "LABEL": (INT, "const", (0, 127)),
     "ROUTINE": (WORD, "routine", None),
     "TEXT": (WORD, "text", None),  # characters as they are typed, as many as the span says
+    "PULSE": (BOOL, "Y", (0, 1)),
+    "POINT": (BOOL, "Y M S", None),
+    "PLACE": (WORD, "D V", None),
+    "DPLACE": (DINT, "D", None),
+    "TABLE": (DINT, "D", None),
+    "BLOCK": (WORD, READABLE["WORD"], None),
 }
+# Of these, what a command works on for as long as it is driven: it gets the number of a counter, of a pulse output or of the
+# first D of a table; of a POINT or PLACE the device itself, for what it reads and writes in its own time.
+UNITS = frozenset({"HCOUNTER", "PULSE", "POINT", "PLACE", "DPLACE", "TABLE", "BLOCK"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,6 +89,11 @@ class OperandSpec:
     def plain(self) -> bool:
         """Whether the function gets or gives its value, and not a unit, a number of a device or a name."""
         return self.kind not in SPECIAL
+
+    @property
+    def unit(self) -> bool:
+        """Whether a command gets the device, and not what it holds."""
+        return self.kind in UNITS
 
 
 _OPERAND = re.compile(
@@ -122,7 +137,7 @@ def parse_signature(text: str) -> tuple[tuple[OperandSpec, ...], tuple[str, ...]
         if match is None:
             raise ValueError(f"{text!r}: cannot read {word!r}")
         kind, name = match["kind"], match["name"]
-        out = written or bool(match["out"]) or name in written_names or kind in ("TIMER", "COUNTER", "DCOUNTER", "HCOUNTER")
+        out = written or bool(match["out"]) or name in written_names or kind in ("TIMER", "COUNTER", "DCOUNTER")
         areas = _areas(match, out)
         special = SPECIAL.get(kind)
         value_range = special[2] if special else None
@@ -146,7 +161,7 @@ def parse_signature(text: str) -> tuple[tuple[OperandSpec, ...], tuple[str, ...]
                 whole=bool(match["whole"]),
             )
         )
-        if specs[-1].read:
+        if specs[-1].read or specs[-1].unit:
             taken.append(name)
     return tuple(specs), tuple(taken), tuple(given)
 
