@@ -15,8 +15,8 @@ class Clocks:
         self.memory = memory
         model = memory.model
         self.area = model.special_bits
-        (self.fastest, _), *self.slow = [(model.relays[meaning], half) for meaning, half in _CLOCKS]
-        self.toggle = model.relays["scan toggle"]
+        (self.fastest, _), *self.slow = [(model.relays[meaning], half) for meaning, half in _CLOCKS if meaning in model.relays]
+        self.toggle = model.relays.get("scan toggle")
         self.restart(0)
 
     def restart(self, now: int) -> None:
@@ -27,7 +27,9 @@ class Clocks:
     def refresh(self, now: int, first: bool) -> None:
         """Set the relays for the scan that begins."""
         relays = self.memory.lists[self.area]
-        relays[self.toggle] = not first and not relays[self.toggle]
+        toggle = self.toggle
+        if toggle is not None:
+            relays[toggle] = not first and not relays[toggle]
         if now >= self.due:
             units = (now - self.began) // UNIT_US
             relays[self.fastest] = units & 1 == 1

@@ -3,7 +3,7 @@
 from ..errors import OPERAND, RANGE
 from ..memory import Memory
 
-RECORD = 5
+KINDS = {RANGE: "fault range", OPERAND: "fault operand"}  # errors with a relay of their own
 
 # Code -> what it means, in words (appendix 6).
 MEANINGS = {
@@ -27,27 +27,28 @@ class Faults:
         self.memory = memory
         model = memory.model
         self.bits, self.words = model.special_bits, model.special_words
-        self.flag, self.of_range, self.of_operand = model.relays["fault"], model.relays["fault range"], model.relays["fault operand"]
-        self.record = model.registers["faults"]
+        self.flag = model.relays["fault"]
+        self.kinds = {code: model.relays[kind] for code, kind in KINDS.items() if kind in model.relays}
+        self.cleared = [self.flag, *(number for code, number in self.kinds.items() if code == OPERAND)]
+        self.record, self.length = model.registers["faults"], model.fault_record
 
     def note(self, code: int) -> bool:
         """An instruction failed: set the flags, push the record when the code differs from the newest. Gives False, the flow of a failed contact."""
         relays, registers = self.memory.lists[self.bits], self.memory.lists[self.words]
         relays[self.flag] = True
-        if code == RANGE:
-            relays[self.of_range] = True
-        elif code == OPERAND:
-            relays[self.of_operand] = True
+        if code in self.kinds:
+            relays[self.kinds[code]] = True
         first = self.record
         if registers[first] != code:
-            registers[first : first + RECORD] = [code, *registers[first : first + RECORD - 1]]
+            registers[first : first + self.length] = [code, *registers[first : first + self.length - 1]]
         return False
 
     def executed(self) -> None:
         """An application instruction was executed correctly: SM20 and SM22 go OFF, the record stays."""
         relays = self.memory.lists[self.bits]
-        relays[self.flag] = relays[self.of_operand] = False
+        for number in self.cleared:
+            relays[number] = False
 
     def codes(self) -> list[int]:
         """The record, newest first."""
-        return [code for code in self.memory.lists[self.words][self.record : self.record + RECORD] if code]
+        return [code for code in self.memory.lists[self.words][self.record : self.record + self.length] if code]

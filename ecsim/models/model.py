@@ -43,16 +43,26 @@ class Model:
     retained: tuple[str, ...]
     special_bits: str = "SM"
     special_words: str = "SD"
+    first_special: int = 0  # where special devices share an area with others, they are those from this number on
+    local_areas: tuple[str, ...] = ("LM", "V")  # of the unit that is executed: put aside by a call and an interrupt
     high_word_first: bool = True
     type_code: int = 0
     step_surcharge: tuple[str, int] | None = None  # contacts on this area from this number on are one step longer
-    spelling: dict[str, str] = field(default_factory=dict)  # how this family writes a mnemonic -> how TABLE has it
+    spelling: dict[str, str] = field(
+        default_factory=dict
+    )  # how the family writes all its mnemonics -> how TABLE has them; empty: as TABLE does
+    pulse_suffix: str = ""  # behind a mnemonic: executed only in the scan in which its flow rises
+    fault_record: int = 5  # so many registers from "faults" on keep the codes of the last errors
     initial_registers: dict[int, int] = field(default_factory=dict)
     retention_limits: dict[str, int] = field(default_factory=dict)
 
     def timer_base_us(self, number: int) -> int:
         """The time unit of a timer in microseconds."""
         return next(base for first, last, base in self.timer_bases if first <= number <= last)
+
+    def special(self, area: str) -> range:
+        """The numbers of an area's special devices; none in most areas."""
+        return range(self.first_special, self.areas[area].count) if area in (self.special_bits, self.special_words) else range(0)
 
     def flag(self, meaning: str) -> tuple[str, int]:
         """Area and number of a special relay by meaning."""
