@@ -63,7 +63,17 @@ class Name:
         return self.text
 
 
-Operand = Device | Bits | Constant | Name
+@dataclass(frozen=True, slots=True)
+class Text:
+    """Characters as they stand in the program (ASC)."""
+
+    text: str
+
+    def __str__(self) -> str:
+        return self.text
+
+
+Operand = Device | Bits | Constant | Name | Text
 
 
 class OperandError(ValueError):

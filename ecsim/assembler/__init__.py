@@ -49,6 +49,7 @@ class _Assembler:
         for unit in self.units:
             find_structure(unit, self.model.limits, self.model.initial_steps, self._report_instruction)
         self._calls()
+        self._count_instructions()
         position, step = 0, 0
         for unit in self.units:
             stepping = {i for region in _regions(unit.nodes) if region.kind == "STL" for i in range(region.opening, region.closing)}
@@ -279,6 +280,19 @@ class _Assembler:
             if device.area == surcharge[0] and device.number >= surcharge[1]:
                 steps += 1
         return steps
+
+    def _count_instructions(self) -> None:
+        """Some kinds of instructions may stand only so often in a program."""
+        found: dict[str, list[Instruction]] = {}
+        for unit in self.units:
+            for instruction in unit.instructions:
+                if instruction.definition.counted:
+                    found.setdefault(instruction.definition.counted, []).append(instruction)
+        for what, instructions in found.items():
+            limit = self.model.limits[what]
+            if len(instructions) > limit:
+                kinds = " and ".join(mnemonic for mnemonic, row in self.definitions.items() if row.counted == what)
+                self._report_instruction(instructions[limit], f"{kinds} stand {len(instructions)} times", f"at most {limit} times together")
 
     def _report_instruction(self, instruction: Instruction, message: str, hint: str = "", section: str = "") -> None:
         self.source.problems.append(

@@ -1,9 +1,9 @@
 """Operands: each word of a statement resolved and held against its row of the instruction's operand table (3.3.2)."""
 
-from ..devices import Bits, Constant, Device, Name, Operand, OperandError, number_text
+from ..devices import Bits, Constant, Device, Name, Operand, OperandError, Text, number_text
 from ..instructions.signature import OperandSpec
 from ..models import Model
-from ..values import REAL, REAL_MAX
+from ..values import REAL, REAL_MAX, wrap
 from .program import Variable
 from .reader import shown
 
@@ -60,6 +60,8 @@ class Resolver:
             return operand
         if spec.kind == "ROUTINE":
             return Name(text)
+        if spec.kind == "TEXT":
+            return self._text(spec, text)
         operand = self.resolve(text, local)
         if text.startswith("#"):
             self._local_type(spec, text, local)
@@ -67,6 +69,16 @@ class Resolver:
         if not text.startswith("#"):
             self._checked[key] = operand
         return operand
+
+    @staticmethod
+    def _text(spec: OperandSpec, text: str) -> Text:
+        """Characters as they are typed; they need no quotes."""
+        if len(text) > spec.span:
+            raise Refused(f"{shown(text)} has {len(text)} characters", f"{spec.name} takes {spec.span} at most", "")
+        strange = next((character for character in text if not "!" <= character <= "~"), None)
+        if strange is not None:
+            raise Refused(f"{spec.name}: {shown(strange)} is no character of ASCII", "from ! (16#21) to ~ (16#7E)", "")
+        return Text(text)
 
     def _local_type(self, spec: OperandSpec, text: str, local: dict[str, Variable]) -> None:
         kind = local[text[1:].casefold()].type
@@ -82,6 +94,8 @@ class Resolver:
             self._digits(spec, operand, text)
             self._number(operand.area, operand.number, 4 * operand.digits, text)
             self._index(spec, operand, text)
+            if spec.written:
+                self._writable(operand, 4 * operand.digits, text)
         else:
             self._area(spec, operand.area, text)
             self._number(
@@ -92,11 +106,11 @@ class Resolver:
             )
             if operand.area == "C" and spec.type.words:
                 self._counter_width(spec, operand, text)
-            if spec.range and spec.kind != "INT":
+            if spec.range and not spec.plain:
                 self._device_range(spec, operand, text)
             self._index(spec, operand, text)
             if spec.written:
-                self._writable(spec, operand, text)
+                self._writable(operand, max(1, spec.type.words), text)
 
     def _area(self, spec: OperandSpec, area: str, text: str) -> None:
         if area not in spec.areas:
@@ -120,11 +134,12 @@ class Resolver:
             return
         if not isinstance(value, int):
             raise Refused(f"{spec.name} = {shown(text)} is no whole number", f"{spec.name} is {spec.type.name}", "3.3.3")
+        fits = -(1 << spec.type.bits - 1) <= value < 1 << spec.type.bits
         if spec.range:
             low, high = spec.range
-            if not low <= value <= high:
+            if not (fits and low <= wrap(value, spec.type) <= high):
                 raise Refused(f"{spec.name} = {shown(text)} is out of range", f"{spec.name} goes from {low} to {high}", "")
-        elif not -(1 << spec.type.bits - 1) <= value < 1 << spec.type.bits:
+        elif not fits:
             low, high = -(1 << spec.type.bits - 1), (1 << spec.type.bits) - 1
             raise Refused(
                 f"{spec.name} = {shown(text)} does not fit into {spec.type.bits} bits", f"constants go from {low} to {high} here", "3.3.3"
@@ -135,6 +150,10 @@ class Resolver:
             raise Refused(f"{shown(text)} is too wide for {spec.name} ({spec.type.name})", "K1 to K4 for 16 bits")
         if spec.type.words == 2 and bits.digits < 5:
             raise Refused(f"{shown(text)} is too narrow for {spec.name} ({spec.type.name})", "K5 to K8 for 32 bits")
+        if spec.whole and 4 * bits.digits != spec.type.bits:
+            raise Refused(
+                f"{shown(text)} is too narrow for {spec.name}", f"a Kn string has the full width here, K{spec.type.bits // 4}", ""
+            )
 
     def _number(self, area: str, number: int, length: int, text: str) -> None:
         room = self.model.areas[area]
@@ -173,10 +192,10 @@ class Resolver:
                 f"{self.model.name} has no {operand.index_area}{operand.index} ({self.model.areas[operand.index_area].span})", "", "3.2.2"
             )
 
-    def _writable(self, spec: OperandSpec, device: Device, text: str) -> None:
+    def _writable(self, device: Device | Bits, length: int, text: str) -> None:
         model = self.model
         fixed = {model.special_bits: model.read_only_relays, model.special_words: model.read_only_registers}.get(device.area, ())
-        if any(number in fixed for number in range(device.number, device.number + max(1, spec.type.words))):
+        if any(number in fixed for number in range(device.number, device.number + length)):
             raise Refused(
                 f"{text} is read only",
                 "the system writes it, programs only read it",

@@ -4,7 +4,7 @@ import sys
 from array import array
 from struct import Struct
 
-from ..devices import Bits, Constant, Device, Operand
+from ..devices import Bits, Constant, Device, Operand, Text
 from ..errors import OPERAND, RANGE, Fault
 from ..memory import Memory
 from ..models import Model
@@ -153,24 +153,42 @@ class Access:
             lines.append(f"C[{number}] = 0")
         return lines
 
+    def copy(self, kind: DataType, source: Operand, target: Operand) -> list[str]:
+        """The statement that moves a pair of registers as it stands, none where source or target is something else."""
+        devices = isinstance(source, Device) and isinstance(target, Device) and source.index is None and target.index is None
+        if not devices or kind.words != 2 or {source.area, target.area} & {"T", "C"}:
+            return []
+        to, of = f"{target.area}[{{}}]".format, f"{source.area}[{{}}]".format
+        return [f"{to(target.number)}, {to(target.number + 1)} = {of(source.number)}, {of(source.number + 1)}"]
+
     # -- spans --------------------------------------------------------------------------------------------------
 
     def load_span(self, kind: DataType, operand: Operand, count: str) -> str:
         """An expression for a list of `count` values from an operand on."""
-        if isinstance(operand, Constant):
-            return f"[{self.constant(kind, operand)}] * {count}"
+        if isinstance(operand, Text):
+            return f"{list(operand.text.encode('ascii').ljust(int(count), bytes(1)))}"
+        if isinstance(operand, Constant):  # it holds one element, whatever the count
+            return f"[{self.constant(kind, operand)}][:counted({count})]"
         _, high = self.limits(kind, operand.area)
         number = self.index(operand) if operand.index is not None else str(operand.number)
         if isinstance(operand, Bits):
             return f"span_bits({operand.area}, {number}, {4 * operand.digits}, {count}, {kind.signed and 4 * operand.digits == kind.bits})"
         values = self.bits(operand.area) if kind is BOOL else operand.area
+        if self._plain_block(kind, operand, count) and (kind is BOOL or kind.signed):
+            return f"{values}[{number}:{operand.number + int(count)}]"
         if kind.words == 2 and operand.area not in ("T", "C"):
             return f"span_{kind.name.lower()}({values}, {number}, {count}, {high})"
         text = f"span({values}, {number}, {count}, {high})"
         return text if kind is BOOL or kind.signed else f"[word & {kind.high} for word in {text}]"
 
-    def store_span(self, kind: DataType, operand: Device | Bits, text: str, resets: bool) -> list[str]:
-        """Statements that write a list of values, each in the signed range of `kind`'s width, from an operand on."""
+    def _plain_block(self, kind: DataType, device: Device, count: str) -> bool:
+        """Whether a span is a slice of one list, known while compiling, that needs no check."""
+        if device.index is not None or not count.isdigit() or device.area in (self.model.special_bits, self.model.special_words):
+            return False
+        return (kind.words < 2 or device.area in ("T", "C")) and device.number + int(count) <= self.limits(kind, device.area)[1]
+
+    def store_span(self, kind: DataType, operand: Device | Bits, text: str, count: str, resets: bool = False) -> list[str]:
+        """Statements that write a list of `count` values, each in the signed range of `kind`'s width, from an operand on."""
         _, high = self.limits(kind, operand.area)
         number = self.index(operand) if operand.index is not None else str(operand.number)
         if isinstance(operand, Bits):
@@ -178,6 +196,8 @@ class Access:
         if resets and operand.area in ("T", "C"):
             return [f"reset_span({operand.area!r}, {number}, {text}, {high})"]
         values = self.bits(operand.area) if kind is BOOL else operand.area
+        if self._plain_block(kind, operand, count):
+            return [f"{values}[{number}:{operand.number + int(count)}] = {text}"]
         guard = {self.model.special_bits: "READ_ONLY_BITS", self.model.special_words: "READ_ONLY_WORDS"}.get(operand.area, "()")
         if kind.words == 2 and operand.area not in ("T", "C"):
             return [f"put_span_{'real' if kind is REAL else 'dint'}({values}, {number}, {text}, {high}, {guard})"]

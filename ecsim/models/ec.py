@@ -34,7 +34,7 @@ EC20 = Model(
     relays={
         "running": 0, "first scan": 1, "power up": 2, "system error": 3, "constant scan": 8,
         "clock 10 ms": 10, "clock 100 ms": 11, "clock 1 s": 12, "clock 1 min": 13, "clock 1 h": 14, "scan toggle": 15,
-        "fault": 20, "fault range": 21, "fault operand": 22, "zero": 180, "carry": 181, "borrow": 182,
+        "fault": 20, "fault range": 21, "fault operand": 22, "zero": 180, "carry": 181, "borrow": 182, "bytewise": 186,
         "counter direction": 0,  # SM(n) for C(n): appendix 1, section 17
     },
     registers={
@@ -45,7 +45,7 @@ EC20 = Model(
     read_only_registers=_numbers((0, 5), (7, 12), (20, 26), (30, 35), 56, 57, (100, 106), 110, (115, 118), 120, (125, 128), 139, 172, 174, 191, 192),
     limits={
         "steps": 12_000, "MC nesting": 7, "FOR nesting": 8, "CALL nesting": 6, "subroutines": 64, "labels": 128, "joined steps": 16,
-        "flows": 20, "bit variables": 16, "word variables": 16, "global variables": 500, "name bytes": 8, "stack": 8,
+        "flows": 20, "bit variables": 16, "word variables": 16, "global variables": 500, "name bytes": 8, "stack": 8, "waveforms": 100,
     },
     filter_inputs=0o20,
     filter_ms=10,
