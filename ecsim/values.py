@@ -23,6 +23,11 @@ class DataType:
     def signed(self) -> bool:
         return self.low < 0
 
+    @property
+    def stored(self) -> "DataType":
+        """The type of the same width that registers hold as it stands."""
+        return {16: INT, 32: DINT}.get(self.bits, self)
+
     def __repr__(self) -> str:
         return self.name
 
@@ -36,6 +41,7 @@ REAL = DataType("REAL", 32, 0, 0)
 TYPES = {kind.name: kind for kind in (BOOL, INT, WORD, DINT, DWORD, REAL)}
 
 REAL_MAX = 3.4028234663852886e38
+REAL_LIMIT = 2.0**127  # beyond it a REAL result sets the carry flag (6.4: 1.701412E+38)
 
 
 def wrap(value: int, kind: DataType) -> int:

@@ -187,8 +187,8 @@ class Access:
             return False
         return (kind.words < 2 or device.area in ("T", "C")) and device.number + int(count) <= self.limits(kind, device.area)[1]
 
-    def store_span(self, kind: DataType, operand: Device | Bits, text: str, count: str, resets: bool = False) -> list[str]:
-        """Statements that write a list of `count` values, each in the signed range of `kind`'s width, from an operand on."""
+    def store_span(self, kind: DataType, operand: Device | Bits, text: str, resets: bool, count: str = "") -> list[str]:
+        """Statements that write a list of values, `count` if that is known, each in the signed range of `kind`'s width, from an operand on."""
         _, high = self.limits(kind, operand.area)
         number = self.index(operand) if operand.index is not None else str(operand.number)
         if isinstance(operand, Bits):

@@ -15,8 +15,8 @@ from ..assembler.program import Instruction, Network, Program, Region, Unit, Var
 from ..devices import Bits, Constant, Device, Operand
 from ..errors import OPERAND
 from ..instructions.signature import OperandSpec
-from ..values import BOOL, REAL
-from .access import Access
+from ..values import BOOL, REAL, REAL_LIMIT, join, words_from_real
+from .access import ROUNDED, Access
 from .template import Template, template
 
 INDENT = "    "
@@ -79,6 +79,12 @@ class Writer:
             lines = ["try:", *indented(lines), "except Fault as error:", *indented(["fault(error.code)", *after])]
         return lines
 
+    @staticmethod
+    def at_rise(instruction: Instruction, flow: str, lines: list[str]) -> list[str]:
+        """Lines executed only in the scan in which the flow rises."""
+        was = f"E[{instruction.pulse}]"
+        return [f"if not ({flow}):", f"{INDENT}{was} = False", f"elif not {was}:", *indented([f"{was} = True", *lines])]
+
     # -- operands -----------------------------------------------------------------------------------------------
 
     @staticmethod
@@ -99,6 +105,9 @@ class Writer:
             checked = self._checked(spec, operand)
             if checked or (pattern.uses.get(name, 1) > 1 and not self._simple(text)):
                 lines.append(f"a_{name} = {text}")
+                text = f"a_{name}"
+            elif spec.type is REAL and spec.span is None and definition.form != "contact" and not definition.as_stored:
+                lines += self.access.fetch(REAL, operand, f"a_{name}")
                 text = f"a_{name}"
             if checked:
                 lines.append(self._range_check(spec, text, flow if definition.after else ""))
@@ -121,9 +130,14 @@ class Writer:
     def _load(self, instruction: Instruction, spec: OperandSpec, operand: Operand) -> str:
         if spec.unit:
             return self._unit(spec, operand)
+        kind = spec.type
+        if instruction.definition.as_stored:
+            kind = kind.stored
+            if spec.type is REAL and isinstance(operand, Constant):
+                operand = Constant(join(*words_from_real(float(operand.value))), operand.text)
         if spec.span is None:
-            return self.access.load(spec.type, operand)
-        return self.access.load_span(spec.type, operand, self._count(instruction, spec))
+            return self.access.load(kind, operand)
+        return self.access.load_span(kind, operand, self._count(instruction, spec))
 
     def _unit(self, spec: OperandSpec, operand: Operand) -> str:
         """What a command gets of a device that it works on: the device itself, or the number of a counter, pulse output or table."""
@@ -216,7 +230,8 @@ class Writer:
         else:
             names = [f"v{place}" for place in range(len(targets))] + [f"f_{word}" for word in definition.given]
             lines.append(f"{', '.join(names)}{',' if len(names) == 1 else ''} = {result}" if names else result)
-            for place, (spec, operand) in enumerate(targets):
+            # What is read too can be reached; what is not goes first, so that an error leaves all destinations as they are.
+            for place, (spec, operand) in sorted(enumerate(targets), key=lambda target: target[1][0].read):
                 lines += self._store_result(instruction, spec, operand, f"v{place}")
             lines += [f"{self._special(instruction, word, flow)} = f_{word}" for word in definition.given]
         if definition.after and "state" not in definition.given:
@@ -224,25 +239,25 @@ class Writer:
         return lines
 
     def _one_result(self, instruction: Instruction, spec: OperandSpec, operand, result: str, pattern: Template) -> list[str]:
-        if pattern.passes and spec.span is None and self._same_width(instruction, spec) and not instruction.definition.flags:
-            return self.access.store(spec.type, operand, result)
+        if instruction.definition.as_stored and not instruction.definition.flags:
+            copied = self.access.copy(spec.type, instruction.operands[0], operand) if pattern.passes else []
+            return copied or self._store_result(instruction, spec, operand, result)
         return [f"v = {result}", *self._store_result(instruction, spec, operand, "v")]
 
-    @staticmethod
-    def _same_width(instruction: Instruction, spec: OperandSpec) -> bool:
-        source = instruction.definition.operands[0]
-        return source.type is spec.type and spec.type.signed
-
     def _store_result(self, instruction: Instruction, spec: OperandSpec, operand, name: str) -> list[str]:
-        kind = spec.type
+        as_stored = instruction.definition.as_stored
+        kind = spec.type.stored if as_stored else spec.type
         if spec.span is not None:
-            if kind.words and kind is not REAL:
+            if kind.words and kind is not REAL and not as_stored:
                 name = f"wrapped{kind.bits}({name})"
-            return self.access.store_span(kind, operand, name, instruction.definition.resets)
+            return self.access.store_span(kind, operand, name, instruction.definition.resets, self._count(instruction, spec))
         if kind is BOOL:
             return self.access.store(kind, operand, name)
         lines = self._flags(instruction, kind, name)
-        if kind is not REAL:
+        if kind is REAL and lines:  # the flags tell about the single that is stored
+            plain = isinstance(operand, Device) and operand.index is None
+            return [*self.access.round(name), *lines, *self.access.store(kind, operand, ROUNDED if plain else name)]
+        if kind is not REAL and not as_stored:
             half, full = 1 << kind.bits - 1, (1 << kind.bits) - 1
             if lines and lines[-1].startswith(INDENT):  # the flags have found the result to be too large already
                 lines.append(f"{INDENT}{name} = ({name} + {half} & {full}) - {half}")
@@ -261,11 +276,8 @@ class Writer:
         if out and kind is not REAL:
             lines += [f"if {kind.low} <= {name} <= {kind.high}:", INDENT + " = ".join(target for target, _ in out) + " = False", "else:"]
             lines += [f"{INDENT}{target} = {test}" for target, test in out]
-        elif out:
-            lines += [
-                f"{target} = {name} in (float('inf'), float('-inf'))" if test.endswith(str(kind.high)) else f"{target} = False"
-                for target, test in out
-            ]
+        elif "carry" in relay:
+            lines.append(f"{relay['carry']} = not {-REAL_LIMIT} <= {name} <= {REAL_LIMIT}")
         return lines
 
     # -- always and command ---------------------------------------------------------------------------------------
@@ -380,10 +392,11 @@ class Writer:
                 loads.append(f"p{place} = {self.access.load(variable.type, operand)}")
                 text = f"p{place}" if variable.type in (BOOL, REAL) else f"wrapped{variable.type.bits}([p{place}])[0]"
                 stores += self.access.store(variable.type, variable.device, text)
-        return [*loads, "FRAMES.append((LM[:], V[:]))", *self._blank_locals(), *stores]
+        frame = "".join(f"{area}[:], " for area in self.model.local_areas)
+        return [*loads, f"FRAMES.append(({frame}))", *self._blank_locals(), *stores]
 
     def _blank_locals(self) -> list[str]:
-        return [f"{area}[:] = [0] * {self.model.areas[area].count}" for area in ("LM", "V")]
+        return [f"{area}[:] = [0] * {self.model.areas[area].count}" for area in self.model.local_areas]
 
     def exit_lines(self, callee: Unit, arguments: tuple[Operand, ...], caller: Unit) -> list[str]:
         """A call's end: results fetched, the caller's LM and V put back (cleared in the main program, 3.1.12), results stored."""
@@ -392,7 +405,7 @@ class Writer:
             if variable.role in ("OUTPUT", "IN_OUT"):
                 lines.append(f"p{place} = {self.access.load(self._signed(variable), variable.device)}")
                 stores += self.access.store(variable.type, operand, f"p{place}")
-        lines.append("LM[:], V[:] = FRAMES.pop()")
+        lines.append("".join(f"{area}[:], " for area in self.model.local_areas) + "*_ = FRAMES.pop()")
         if caller.kind == "MAIN":
             lines += self._blank_locals()
         return lines + stores
