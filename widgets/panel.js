@@ -224,7 +224,10 @@ class View {
       else grid.querySelector(part === "chart" || part === "ladder" ? ".lab-b" : ".lab-a").append(place);
       this.parts[part] = panels[part](place, layouts[part] ?? {}, this.page, this);
     }
-    if (parts.length > 1) columns(grid);
+    if (parts.length > 1) {
+      set(grid, "data-chart", parts.includes("chart") ? "" : null);
+      columns(grid);
+    }
     this.apply(this.page.state);
     this.rest(this.page.dead);
   }
@@ -251,6 +254,7 @@ class View {
   }
   shortcut(event) {
     if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || event.target.closest("input, textarea")) return;
+    if (event.key === " " && event.target.closest("button") && !event.target.closest(".keys")) return; // it presses that button
     const verb = { r: "toggle", R: "toggle", " ": "scan", n: "next_step", N: "next_step", ArrowLeft: "back" }[event.key];
     if (!verb || !this.parts.transport) return;
     event.preventDefault();

@@ -130,6 +130,9 @@ class Panel(anywidget.AnyWidget):
             else:
                 self.send({"n": self.stream.number})
 
+    def __repr__(self) -> str:
+        return f"<Panel {', '.join(self.parts)}: {self.rig.plc.model.name}>"
+
     def close(self) -> None:
         """Leave the session and close the view."""
         with contextlib.suppress(AttributeError):

@@ -5,7 +5,7 @@ const DETENT = (at) => 12 + (180 / (SPEEDS.length - 1)) * at;
 
 panels.transport = (place, layout, page) => {
   const key = (verb, word, shortcut, glyph, main = "") =>
-    `<button class="keycap ${main}" data-verb="${verb}" data-testid="${verb === "toggle" ? "run" : verb.replace("_", "-")}" data-row="0" tabindex="-1"
+    `<button class="keycap ${main}" data-verb="${verb}" data-testid="${verb === "toggle" ? "run" : verb.replace("_", "-")}"
       aria-keyshortcuts="${shortcut}" title="${word} (${shortcut})">${icon(glyph, 18)}<span>${word}</span></button>`;
   place.innerHTML = `
     <section class="transport" aria-label="Run control" data-testid="transport">
@@ -38,8 +38,6 @@ panels.transport = (place, layout, page) => {
   const find = (selector) => place.querySelector(selector);
   const [section, chip, slider, plant] = [".transport", ".chip", ".speedbar", ".toggle"].map(find);
   const keycaps = [...place.querySelectorAll(".keycap")];
-  keycaps.forEach((cap, col) => (cap.dataset.col = col));
-  roving(find(".keys"), () => keycaps.filter((cap) => !cap.disabled));
 
   let run = {};
   const press = (verb) => {
@@ -47,9 +45,8 @@ panels.transport = (place, layout, page) => {
     if (!cap.disabled) page.say("transport", verb === "toggle" ? (run.state === "running" ? "pause" : "run") : verb);
   };
   for (const cap of place.querySelectorAll("[data-verb]")) cap.addEventListener("click", () => press(cap.dataset.verb));
-  // Space is one scan anywhere in this panel; Enter presses the key that has the focus.
-  section.addEventListener("keyup", (event) => event.key === " " && event.target !== plant && event.preventDefault());
-  plant.addEventListener("keydown", (event) => event.key === " " && event.stopPropagation());
+  // Space is one scan also on these keys; Enter presses the one that has the focus.
+  find(".keys").addEventListener("keyup", (event) => event.key === " " && event.preventDefault());
   plant.addEventListener("click", () => page.say("transport", "plant", { on: plant.getAttribute("aria-checked") !== "true" }));
   if (!layout.plant) plant.hidden = true;
 

@@ -91,7 +91,6 @@ panels.unit = (place, layout, page, view) => {
         event.preventDefault();
         open(event.target.dataset.lamp);
       }
-      if (event.key === " " && event.target !== event.currentTarget) event.stopPropagation(); // it flips, it is not one scan
     });
     show(state);
   }

@@ -3,7 +3,6 @@
 from .history import Pulses
 from .panel import Part
 
-
 PATIENCE_US = 100_000  # a press that no scan sees for so long (a filter, a force) is let go all the same
 
 
@@ -18,6 +17,7 @@ class Unit(Part):
         self._releases: set[str] = set()
         self.points = {device: rig.point(device) for device in (*rig.inputs, *rig.outputs)}
         self._pulses = Pulses()
+        self._image: tuple[list, list] | None = None
         rig.watch.watchers.append(self._watch)
 
     def layout(self):
@@ -48,7 +48,12 @@ class Unit(Part):
         return [device for device in self.points if self.rig.bit(device)]
 
     def _watch(self):
-        self._pulses.see(self._on())
+        """After each scan; most of them change nothing, so the two images are compared as a whole."""
+        lists = self.rig.plc.memory.lists
+        image = lists["X"][: len(self.rig.inputs)], lists["Y"][: len(self.rig.outputs)]
+        if image != self._image:
+            self._image = image
+            self._pulses.see(self._on())
         for device in list(self._releases):
             self._release(device)
 
