@@ -3,7 +3,6 @@
 from collections.abc import Iterable, Sequence
 from typing import Protocol
 
-from ..models import Model
 from .program import Program, Unit, Variable
 
 # The columns of operands and comments; longer words push what follows to the right.
@@ -14,6 +13,7 @@ class Printable(Protocol):
     """What a line of the instruction list is made from; an Instruction has all of it."""
 
     mnemonic: str
+    spelled: str
     written: tuple[str, ...]
     comment: str
 
@@ -22,39 +22,36 @@ def print_program(program: Program) -> str:
     """The text of a whole program; a main program alone, without variables, needs no headers."""
     bare = len(program.units) == 1 and not program.variables and not program.main.variables and program.main.name == "MAIN"
     if bare:
-        return print_unit_body(program.main, program.model)
+        return print_unit_body(program.main)
     parts = [_globals(program.variables.values())] if program.variables else []
-    parts += [print_unit(unit, program.model) for unit in program.units]
+    parts += [print_unit(unit) for unit in program.units]
     return "\n".join(parts)
 
 
-def print_unit(unit: Unit, model: Model | None = None) -> str:
+def print_unit(unit: Unit) -> str:
     """One unit between its header and its end."""
     word = "PROGRAM" if unit.kind == "MAIN" else unit.kind
     head = f"{word} {unit.name}" + (f" EVENT {unit.event}" if unit.event is not None else "")
     rows = [(f"VAR_{v.role} {v.name} : {v.type.name}", v.comment) for v in unit.variables.values()]
-    return "\n".join([head, *_with_comments(rows), print_unit_body(unit, model) + f"END_{word}\n"])
+    return "\n".join([head, *_with_comments(rows), print_unit_body(unit) + f"END_{word}\n"])
 
 
-def print_unit_body(unit: Unit, model: Model | None = None) -> str:
+def print_unit_body(unit: Unit) -> str:
     """The instructions of a unit, a blank line before each titled network and each step."""
     breaks = {network.start for network in unit.networks if unit.instructions[network.start].mnemonic == "STL"}
-    return print_instructions(unit.instructions, unit.titles, breaks, model)
+    return print_instructions(unit.instructions, unit.titles, breaks)
 
 
-def print_instructions(
-    instructions: Sequence[Printable], titles: dict[int, str] | None = None, breaks: Iterable[int] = (), model: Model | None = None
-) -> str:
+def print_instructions(instructions: Sequence[Printable], titles: dict[int, str] | None = None, breaks: Iterable[int] = ()) -> str:
     """Instructions a line each; `titles` stand as comment lines before theirs, `breaks` are the indices that get a blank line before."""
     titles, breaks = titles or {}, set(breaks)
-    spelling = {canonical: spelled for spelled, canonical in model.spelling.items()} if model else {}
     rows: list[tuple[str, str]] = []
     for index, instruction in enumerate(instructions):
         title = titles.get(index, "")
         if rows and (title or index in breaks):
             rows.append(("", ""))
         rows += [(f"// {line}".rstrip(), "") for line in title.split("\n")] if title else []
-        mnemonic = spelling.get(instruction.mnemonic, instruction.mnemonic)
+        mnemonic = instruction.spelled or instruction.mnemonic
         operands = " ".join(instruction.written)
         rows.append((f"{mnemonic:<{OPERANDS - 1}} {operands}".rstrip() if operands else mnemonic, instruction.comment))
     lines = _with_comments(rows)

@@ -24,9 +24,11 @@ class Instruction:
     step: int = 0
     steps: int = 0
     slot: int = -1  # where its state of the last scan is kept, -1 when it has none
+    spelled: str = ""  # the mnemonic as its family writes it, where that differs
+    pulse: int = -1  # where the flow of the last scan is kept if it is executed at a rise only, -1 when in every scan
 
     def __str__(self) -> str:
-        return " ".join((self.mnemonic, *self.written))
+        return " ".join((self.spelled or self.mnemonic, *self.written))
 
 
 @dataclass(slots=True)

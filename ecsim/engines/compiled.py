@@ -231,7 +231,9 @@ class _Rung:
 
     def _when(self, lines: list[str]) -> None:
         flow = self._used()
-        if flow == "True":
+        if self.instruction.pulse >= 0:
+            self.lines += self.c.at_rise(self.instruction, flow, lines)
+        elif flow == "True":
             self.lines += lines
         elif self.last == (flow, len(self.lines)):  # one `if` around several outputs of one flow
             self.lines += indented(lines)

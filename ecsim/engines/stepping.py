@@ -237,7 +237,8 @@ class _Builder(Writer):
         self.wanted.append(lambda namespace: give(namespace[name]))
 
     def _when(self, lines: list[str]) -> None:
-        self._op(["if flow:", *indented(lines), "return flow"])
+        held = ["if flow:", *indented(lines)] if self.instruction.pulse < 0 else self.at_rise(self.instruction, "flow", lines)
+        self._op([*held, "return flow"])
 
     def _contact(self, instruction: Instruction) -> None:
         lines, text = super().contact(instruction)

@@ -392,8 +392,12 @@ class Writer:
                 loads.append(f"p{place} = {self.access.load(variable.type, operand)}")
                 text = f"p{place}" if variable.type in (BOOL, REAL) else f"wrapped{variable.type.bits}([p{place}])[0]"
                 stores += self.access.store(variable.type, variable.device, text)
-        frame = "".join(f"{area}[:], " for area in self.model.local_areas)
-        return [*loads, f"FRAMES.append(({frame}))", *self._blank_locals(), *stores]
+        return [*loads, f"FRAMES.append({self._frame})", *self._blank_locals(), *stores]
+
+    @property
+    def _frame(self) -> str:
+        """All that belongs to the unit that is executed, as a tuple."""
+        return f"({''.join(f'{area}[:], ' for area in self.model.local_areas)})"
 
     def _blank_locals(self) -> list[str]:
         return [f"{area}[:] = [0] * {self.model.areas[area].count}" for area in self.model.local_areas]
@@ -405,7 +409,7 @@ class Writer:
             if variable.role in ("OUTPUT", "IN_OUT"):
                 lines.append(f"p{place} = {self.access.load(self._signed(variable), variable.device)}")
                 stores += self.access.store(variable.type, operand, f"p{place}")
-        lines.append("".join(f"{area}[:], " for area in self.model.local_areas) + "*_ = FRAMES.pop()")
+        lines.append(f"{self._frame} = FRAMES.pop()")
         if caller.kind == "MAIN":
             lines += self._blank_locals()
         return lines + stores
