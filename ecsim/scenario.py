@@ -85,8 +85,9 @@ def run_steps(plc: Plc, steps: list[dict[str, Any]]) -> Iterator[Mismatch]:
             value = plc[name]
             if not limits["min"] <= value <= limits["max"]:
                 yield Mismatch(number, name, value, f"{limits['min']} to {limits['max']}")
-        if "error" in step and plc["SD20"] != step["error"]:
-            yield Mismatch(number, "SD20", plc["SD20"], step["error"])
+        record = f"{plc.model.special_words}{plc.model.registers['faults']}"
+        if "error" in step and plc[record] != step["error"]:
+            yield Mismatch(number, record, plc[record], step["error"])
 
 
 def _act(plc: Plc, action: str | None, number: int) -> None:

@@ -21,10 +21,15 @@ def assemble(text: str, model: str | Model, name: str = "") -> Program:
 class _Assembler:
     def __init__(self, source: Source, model: Model):
         self.source, self.model = source, model
-        self.definitions = {
-            **{mnemonic: row for mnemonic, row in TABLE.items() if model.family != "EC" or model.name in row.models},
-            **{spelled: TABLE[mnemonic] for spelled, mnemonic in model.spelling.items()},
+        own = {spelled: TABLE[mnemonic] for spelled, mnemonic in model.spelling.items()}
+        own = own or {mnemonic: row for mnemonic, row in TABLE.items() if model.name in row.models}
+        rising = {
+            mnemonic + model.pulse_suffix: row
+            for mnemonic, row in own.items()
+            if model.pulse_suffix and row.form in ("value", "command") and not row.keeps
         }
+        self.definitions = rising | own  # a name that belongs to an instruction stays with it
+        self.at_rise = rising.keys() - own.keys()
 
     def program(self) -> Program:
         variables = self._globals()
@@ -58,6 +63,8 @@ class _Assembler:
                 instruction.steps = self._steps(instruction, index in stepping)
                 if instruction.definition.keeps:
                     instruction.slot, slots = slots, slots + 1
+                if instruction.spelled in self.at_rise:
+                    instruction.pulse, slots = slots, slots + 1
                 position, step = position + 1, step + instruction.steps
             for region in _regions(unit.nodes):
                 if region.kind == "STL":
@@ -139,7 +146,7 @@ class _Assembler:
                     raw.line, f"EVENT {shown(raw.event)} is no event number", "chapter 9 numbers them from 0 to 37", "9.1", word=3
                 )
         unit = Unit(raw.kind, raw.name, event, line=raw.line)
-        room = {"LM": 0, "V": 0}
+        room = dict.fromkeys(self.model.local_areas, 0)
         count = {"bit": 0, "word": 0}
         for declared in raw.variables:
             kind = TYPES.get(declared.what)
@@ -151,7 +158,10 @@ class _Assembler:
                 continue
             if raw.kind != "SUBROUTINE" and declared.role != "TEMP":
                 self.source.report(declared.line, f"only a subroutine has {declared.role} variables", "", "4.4.3")
-            area = "LM" if kind is BOOL else "V"
+            if not self.model.local_areas:
+                self.source.report(declared.line, f"{self.model.name} has no variables of subroutines", "use devices", "4.4.3", word=1)
+                continue
+            area = self.model.local_areas[kind is not BOOL]
             count["bit" if kind is BOOL else "word"] += 1
             unit.variables[declared.name.casefold()] = Variable(
                 declared.name, Device(area, room[area]), declared.comment, kind, declared.role, declared.line
@@ -200,15 +210,18 @@ class _Assembler:
             operands = self._operands(definition, statement, unit)
         if operands is None:
             return None
-        return Instruction(definition.mnemonic, definition, operands, statement.operands, statement.line, statement.comment)
+        spelled = statement.mnemonic if statement.mnemonic != definition.mnemonic else ""
+        return Instruction(
+            definition.mnemonic, definition, operands, statement.operands, statement.line, statement.comment, spelled=spelled
+        )
 
     def _unknown(self, statement: Statement) -> None:
         written = statement.mnemonic
         row = TABLE.get(written)
         if row is not None:
-            self.source.report(
-                statement.line, f"{self.model.name} has no {written}", f"{written} exists on {' and '.join(row.models)}", row.section
-            )
+            here = [spelled for spelled, mnemonic in self.model.spelling.items() if mnemonic == written]
+            hint = f"write {' or '.join(here)}" if here else f"{written} exists on {' and '.join(row.models)}"
+            self.source.report(statement.line, f"{self.model.name} has no {written}", hint, row.section)
             return
         from difflib import get_close_matches
 

@@ -185,7 +185,7 @@ class Resolver:
             return
         if not spec.indexed:
             raise Refused(f"{shown(text)}: {spec.name} cannot be indexed", "name the device itself", "3.2.2")
-        if operand.area in (self.model.special_bits, self.model.special_words):
+        if operand.number in self.model.special(operand.area):
             raise Refused(f"{shown(text)}: special relays and registers cannot be indexed", "name the device itself", "3.2.2")
         if operand.index >= self.model.areas[operand.index_area].count:
             raise Refused(

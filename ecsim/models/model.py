@@ -44,7 +44,7 @@ class Model:
     special_bits: str = "SM"
     special_words: str = "SD"
     first_special: int = 0  # where special devices share an area with others, they are those from this number on
-    local_areas: tuple[str, ...] = ("LM", "V")  # of the unit that is executed: put aside by a call and an interrupt
+    local_areas: tuple[str, ...] = ("LM", "V")  # bits and words of the unit that is executed: put aside by a call and an interrupt
     high_word_first: bool = True
     type_code: int = 0
     step_surcharge: tuple[str, int] | None = None  # contacts on this area from this number on are one step longer
