@@ -99,7 +99,6 @@ class Plc:
             **functions(self.memory),
             "CLOCK": self.clock,
             "FRAMES": [],
-            "LOOPS": [0] * 16,
             "tick": self.timers.tick,
             "begin": self.timers.begin,
             "resume": self.timers.resume,

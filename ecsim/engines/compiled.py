@@ -47,6 +47,11 @@ def _joined(word: str, left: Flow, right: Flow) -> Flow:
     return Flow(f"{left.within(binds)} {word} {right.within(binds)}", binds, depth)
 
 
+def _statements(lines: list[str]) -> list[str]:
+    """Lines as the body of a function or an `if`: comments alone are none."""
+    return lines if any(not line.lstrip().startswith("#") for line in lines) else [*lines, "pass"]
+
+
 @dataclass(slots=True)
 class Block:
     """Statements of so many instructions; `leaves` when they can return."""
@@ -63,6 +68,7 @@ class Compiler(Writer):
         super().__init__(program)
         self.out: list[str] = []
         self.functions = 0
+        self.globals["LOOPS"] = []
         self.unit_names = {unit.name.upper(): f"unit_{place}" for place, unit in enumerate(program.units)}
 
     def source(self) -> str:
@@ -80,10 +86,15 @@ class Compiler(Writer):
 
     def function(self, name: str, lines: list[str]) -> None:
         """Write one function; the lists it uses become defaults, which are reached faster than globals."""
-        body = lines or ["pass"]
+        body = _statements(lines)
         used = sorted(set(_LISTS.findall("\n".join(body))))
         parameters = ", ".join(f"{area}={area}" for area in used)
         self.out += [f"def {name}({parameters}):", *indented(body), ""]
+
+    def new_loop(self) -> int:
+        """A place for what is left of one FOR; each has its own, since a loop may call a subroutine with loops."""
+        self.globals["LOOPS"].append(0)
+        return len(self.globals["LOOPS"]) - 1
 
     def new_name(self) -> str:
         self.functions += 1
@@ -133,7 +144,7 @@ class Compiler(Writer):
         outer, self.region = self.region, region
         body = self.pack(self.blocks(region.nodes))
         self.region = outer
-        inner = body.lines or ["pass"]
+        inner = _statements(body.lines)
         if region.kind == "MC":
             clear = self.clear_lines(self.unit, region)
             lines = [f"if {opened}:", *indented(inner), *(["else:", *indented(clear)] if clear else [])]
@@ -144,7 +155,7 @@ class Compiler(Writer):
             if clear:
                 lines += [f"elif E[{region.slot}]:", *indented([f"E[{region.slot}] = False", *clear])]
         else:
-            spend = f"spend({sum(i.steps for i in self.unit.instructions[region.opening + 1 : region.closing])})"
+            spend = f"spend({sum(i.steps for i in self.unit.instructions[region.opening + 1 : region.closing + 1])})"
             lines = [f"for turn_{region.opening} in range({opened}):", *indented([spend, *inner])]
         return Block(lines, body.count + 1, body.leaves)
 
@@ -322,10 +333,12 @@ class _Rung:
             *enter,
             f"left = {self.c.unit_names[name.upper()]}()",
             *leave,
-            "if left == 2: return 2",
             *([f"if {self.c.fault_flag}: executed()"] if self.c.can_fault else []),
         ]
-        self._when(self.c.guard_faults(lines, arguments))
+        guarded = self.c.guard_faults(lines, arguments)
+        if guarded is not lines:
+            guarded = ["left = 0", *guarded]  # the call itself may have failed
+        self._when([*guarded, "if left == 2: return 2"])
 
 
 class _FlatRung(_Rung):
@@ -414,20 +427,23 @@ class _FlatUnit:
             clear = [f"if E[{region.slot}]:", *indented([f"E[{region.slot}] = False", *c.clear_lines(self.unit, region)])]
             lines += [f"if not ({active}):", *indented([*clear, f"return @{end}@"]), f"E[{region.slot}] = True"]
         else:
-            lines += [f"LOOPS[{region.number}] = {rung.opened}", f"if LOOPS[{region.number}] <= 0: return @{end}@"]
+            cost = sum(i.steps for i in self.unit.instructions[region.opening + 1 : region.closing + 1])
+            loop = f"LOOPS[{c.new_loop()}]"
+            lines += [f"{loop} = {rung.opened}", f"if {loop} <= 0: return @{end}@"]
             self._mark(f"body_{region.opening}")
+            self.segments[-1].append(f"spend({cost})")
         outer, c.region = c.region, region
         self._nodes(region.nodes)
         c.region = outer
         if region.kind == "FOR":
-            cost = sum(i.steps for i in self.unit.instructions[region.opening + 1 : region.closing])
-            lines = self.segments[-1]
-            lines += [f"spend({cost})", f"LOOPS[{region.number}] -= 1", f"if LOOPS[{region.number}] > 0: return @body_{region.opening}@"]
+            self.segments[-1] += [f"{loop} -= 1", f"if {loop} > 0: return @body_{region.opening}@"]
         self._mark(end)
 
 
 class CompiledEngine:
     """Runs a program as generated Python; `bind` again when the memory's lists have been replaced."""
+
+    filename = ""
 
     def __init__(self, program: Program, memory: Memory, services: dict[str, object]):
         self.program, self.memory, self.services = program, memory, services

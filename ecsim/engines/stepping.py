@@ -373,7 +373,13 @@ class _Builder(Writer):
         self._branch(lambda: self._return(True))
 
     def halt(self) -> None:
-        self._branch(lambda: HALT)
+        self._branch(self._halt)
+
+    def _halt(self) -> int:
+        """The calls in progress end, then the PLC stops."""
+        while self.engine.returns:
+            self.engine.returns.pop()(None)
+        return HALT
 
     def call(self, name: str, arguments: tuple[Operand, ...]) -> None:
         callee, engine, stage = self.program.unit(name), self.engine, self.stage
@@ -455,7 +461,7 @@ class _Builder(Writer):
     def _loop(self, region: Region, turns: list, body: int, after: int):
         left = [0]
         spend = self.engine.services["spend"]
-        cost = sum(i.steps for i in self.unit.instructions[region.opening + 1 : region.closing])
+        cost = sum(i.steps for i in self.unit.instructions[region.opening + 1 : region.closing + 1])
 
         def begin(flow) -> int:
             left[0] = turns[0]() if flow else 0
