@@ -12,10 +12,13 @@ from .engines import CompiledEngine, SteppingEngine, Trace
 from .engines.access import functions
 from .errors import WATCHDOG, EcsimError
 from .hardware.clocks import Clocks
+from .hardware.counters import Counters
 from .hardware.faults import MEANINGS, STOPPING, Faults
 from .hardware.inputs import Inputs
 from .hardware.interrupts import Interrupts
+from .hardware.meters import Meters
 from .hardware.timers import Timers
+from .hardware.unit import Unit
 from .memory import Memory
 from .models import Model, get_model
 from .project import read_project
@@ -76,12 +79,21 @@ class Plc:
             input_filter_ms = self.system.input_filter_ms
         if input_filter_ms is None:
             input_filter_ms = self.model.filter_ms
-        self.interrupts = Interrupts(self.memory)
-        self.inputs = Inputs(self.memory, input_filter_ms, self.interrupts.edge)
+        self.faults = Faults(self.memory)
         self.clock = [0]
+        self._awake: list[Unit] = []  # the units that time has to ask
+        watchers: list[Unit] = []
+        self.inputs = Inputs(self.memory, input_filter_ms, self._awake, watchers)
+        self.interrupts = Interrupts(self.memory, self.faults, self._awake)
+        self.interrupts.inputs = self.inputs
+        self.counters = Counters(self.memory, self.inputs, self.interrupts, self.faults, self._awake)
+        self.meters = Meters(self.memory, self.inputs, self._awake)
+        watchers += (self.counters, self.meters, self.interrupts)
+        self.units: dict[str, Unit] = {
+            "counters": self.counters, "meters": self.meters, "inputs": self.inputs, "interrupts": self.interrupts,
+        }  # fmt: skip
         self.timers = Timers(self.memory, self.clock)
         self.clocks = Clocks(self.memory)
-        self.faults = Faults(self.memory)
         self.running = False
         self.scans = 0
         self.system_error = 0
@@ -207,7 +219,8 @@ class Plc:
         self.memory.slots(self.program.slots)
         self.clocks.restart(self.clock[0])
         self.timers.restart()
-        self.interrupts.restart({unit.event: unit.name for unit in self.program.units if unit.event is not None})
+        self._restart_units()
+        self.interrupts.assign({unit.event: unit.name for unit in self.program.units if unit.event is not None})
         self.running = self._first = True
 
     def stop(self) -> None:
@@ -216,6 +229,7 @@ class Plc:
             return
         self.running = False
         self._tell("running", False)
+        self._restart_units()
         if self.system.stop_outputs == "freeze":
             return
         self.memory.clear("Y")
@@ -323,11 +337,13 @@ class Plc:
             period = self.period_us
             if self._first or period != self._noted_us:
                 self._housekeeping(period)
-            if self.interrupts.routines:
+            if self._awake:
                 self._pass(now + period)
             self.clock[0] = now + period
         else:
             self.clock[0] = now + self.period_us
+            for unit in tuple(self._awake):
+                unit.advance(self.clock[0])
         self.scans += 1
 
     def _execute(self) -> None:
@@ -348,6 +364,7 @@ class Plc:
             self._first = False
             self._tell("first scan", False)
             self._tell("power up", False)
+            self.inputs.catching = False
         self._noted_us = period_us
         period = (period_us + 500) // 1000
         registers[numbers["scan time"]] = period
@@ -361,12 +378,36 @@ class Plc:
             self._interrupt(self.interrupts.routines[self.interrupts.queue.pop(0)])
 
     def _pass(self, until: int) -> None:
-        """Time goes on to `until`; interrupt programs run at the time of their event."""
-        self.interrupts.arm(self.clock[0])
-        while self.running and (event := self.interrupts.take(until)) is not None:
-            self.clock[0], routine = event
-            if routine is not None:
-                self._interrupt(routine)
+        """Time goes on to `until`, from event to event of the units that are awake; interrupt programs run at the time of their event."""
+        clock, awake, interrupts = self.clock, self._awake, self.interrupts
+        interrupts.ended()
+        interrupts.time = clock[0]
+        for unit in tuple(awake):
+            unit.look(clock[0])
+        while self.running:
+            first, moment = None, until + 1
+            for unit in awake:
+                due = unit.next(until)
+                if due is not None and due < moment:
+                    first, moment = unit, due
+            if first is None:
+                break
+            clock[0] = moment
+            for unit in tuple(awake):
+                unit.advance(moment)
+            first.act(moment)
+            if interrupts.queue:
+                self._serve_queue()
+                for unit in tuple(awake):
+                    unit.look(moment)
+        clock[0] = until
+        for unit in tuple(awake):
+            unit.advance(until)
+
+    def _restart_units(self) -> None:
+        """STOP or RUN: no command holds anything."""
+        for unit in self.units.values():
+            unit.restart(self.clock[0])
 
     def _interrupt(self, routine: str) -> None:
         lists = self.memory.lists
@@ -392,6 +433,8 @@ class Plc:
 
     def release(self, claim: int) -> None:
         """The flow of a command has gone, or its MC or step has been left: what it held is given back."""
+        for unit in self.units.values():
+            unit.release(claim, self.clock[0])
 
     def watchdog_reset(self) -> None:
         """WDT: the program's time counts from zero again."""
@@ -503,8 +546,7 @@ class Plc:
         """Everything that changes while the PLC runs, to be given to `restore` of the same Plc with the same program."""
         return {
             "memory": self.memory.snapshot(),
-            "inputs": self.inputs.snapshot(),
-            "interrupts": (self.interrupts.enabled, list(self.interrupts.due), dict(self.interrupts.routines), list(self.interrupts.queue)),
+            "units": {name: unit.snapshot() for name, unit in self.units.items()},
             "clocks": (self.clocks.began, self.clocks.due, self.clocks.slow_due),
             "watched": dict(self.timers.watched),
             "plc": (self.clock[0], self.scans, self.running, self._first, self.system_error, self._asked),
@@ -514,10 +556,8 @@ class Plc:
     def restore(self, snapshot: dict[str, Any]) -> None:
         """Go back to a snapshot."""
         self.memory.restore(snapshot["memory"])
-        self.inputs.restore(snapshot["inputs"])
-        enabled, due, routines, queue = snapshot["interrupts"]
-        self.interrupts.enabled, self.interrupts.due, self.interrupts.routines = enabled, list(due), dict(routines)
-        self.interrupts.queue[:] = queue
+        for name, state in snapshot["units"].items():
+            self.units[name].restore(state)
         self.clocks.began, self.clocks.due, self.clocks.slow_due = snapshot["clocks"]
         self.timers.watched = dict(snapshot["watched"])
         self.clock[0], self.scans, self.running, self._first, self.system_error, self._asked = snapshot["plc"]

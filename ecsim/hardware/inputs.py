@@ -1,53 +1,113 @@
-"""Inputs: terminals, the input filter and the input image (2.1.2, 2.2.1, 3.1.3)."""
+"""Inputs: terminals, signals on them, the input filter, the input image and pulse capture (2.1.2, 2.2.1, 3.1.3, 8.2)."""
 
-from collections.abc import Callable
+from collections.abc import Iterable
 
 from ..memory import Memory
+from .signals import Signal, steady
+from .unit import Unit
+
+FAST = 8  # X0 to X7: watched between scans
 
 
-class Inputs:
+class Inputs(Unit):
     """The X terminals. A terminal is what the wiring holds; the image X takes it over at the input refresh, after the filter."""
 
-    def __init__(self, memory: Memory, filter_ms: float, on_edge: Callable[[int, bool], None]):
-        self.memory, self.on_edge = memory, on_edge
+    rank = 1
+
+    def __init__(self, memory: Memory, filter_ms: float, awake: list[Unit], watchers: list[Unit]):
+        super().__init__(awake)
+        self.memory, self.watchers = memory, watchers
         self.terminals = [False] * memory.model.areas["X"].count
-        self.filtered = memory.model.filter_inputs
+        self.filtered = frozenset(range(memory.model.filter_inputs))
+        self.unfiltered: frozenset[int] = frozenset()
         self.filter_us = round(filter_ms * 1000)
         self.waiting: dict[int, tuple[int, int]] = {}  # number -> (level, time from which it counts)
+        self.signals: dict[int, Signal] = {}
+        self.time = 0  # up to which signals have been taken into account
+        self.taken: frozenset[int] = frozenset()  # inputs of HCNT and SPD: from the second scan on they catch no pulse (8.2)
+        self.catching = True
+        self.capture = memory.model.relays.get("capture")
         self.changed = True
 
+    def assign(self, taken: Iterable[int], watched: Iterable[int]) -> None:
+        """Tell which inputs the program's counters and SPD need, and which others it watches between scans: none of them is filtered."""
+        self.taken = frozenset(taken)
+        self.unfiltered = self.taken | frozenset(watched)
+
+    def restart(self, now: int) -> None:
+        self.catching = True
+
+    # -- terminals ----------------------------------------------------------------------------------------------
+
     def set(self, number: int, level: int, now: int) -> None:
-        """Put a level on a terminal; it stays until it is set again."""
+        """Put a level on a terminal; it stays until it is set again. A signal on it ends."""
         level = bool(level)
+        if self.signals and self.signals.pop(number, None) is not None:
+            self.wake(bool(self.signals))
         if self.terminals[number] is level:
             return
         self.terminals[number] = level
         self.changed = True
-        self.on_edge(number, level)
-        if number < self.filtered and self.filter_us:
+        if self.filter_us and number in self.filtered and number not in self.unfiltered:
             self.waiting[number] = (level, now + self.filter_us)
+        if number < FAST:
+            if level:
+                self._catch(number)
+            for watcher in self.watchers:
+                watcher.edge(number, level, now)
+
+    def drive(self, number: int, signal: Signal, now: int) -> None:
+        """Put a signal on a terminal; after its end the last level stays."""
+        self.set(number, signal.level(now), now)
+        if not self.signals:
+            self.time = now
+        self.signals[number] = signal
+        self.changed = True
+        self.wake()
+
+    def _catch(self, number: int) -> None:
+        if self.capture is not None and (self.catching or number not in self.taken):
+            self.memory.lists[self.memory.model.special_bits][self.capture + number] = True
+
+    # -- time ---------------------------------------------------------------------------------------------------
+
+    def advance(self, now: int) -> None:
+        for number, signal in self.signals.items():
+            if number < FAST and signal.count(True, self.time, now):
+                self._catch(number)
+            self.terminals[number] = signal.level(now)
+        self.time = now
 
     def refresh(self, now: int) -> None:
         """Take the terminals over into the input image."""
-        if not self.changed:
-            return
         image = self.memory.lists["X"]
-        if not self.waiting:
+        if not self.waiting and not self.signals:
             image[:] = self.terminals
             self.changed = False
             return
-        for number, level in enumerate(self.terminals):
-            if number not in self.waiting:
-                image[number] = level
+        fresh = self.terminals[:]
         for number, (level, due) in list(self.waiting.items()):
+            fresh[number] = level if now >= due else image[number]
             if now >= due:
-                image[number] = level
                 del self.waiting[number]
+        for number, signal in list(self.signals.items()):
+            least = self.filter_us if number in self.filtered and number not in self.unfiltered else 0
+            level = steady(signal, now, least) if least else self.terminals[number]
+            if level is not None:
+                fresh[number] = level
+                self.waiting.pop(number, None)
+            else:
+                fresh[number] = image[number]
+            if signal.end is not None and signal.end + least <= now:
+                del self.signals[number]
+                self.wake(bool(self.signals))
+        image[:] = fresh
 
     def snapshot(self) -> tuple:
-        return list(self.terminals), dict(self.waiting)
+        return list(self.terminals), dict(self.waiting), dict(self.signals), self.time, self.catching
 
     def restore(self, snapshot: tuple) -> None:
         self.terminals[:] = snapshot[0]
-        self.waiting = dict(snapshot[1])
+        self.waiting, self.signals, self.time, self.catching = dict(snapshot[1]), dict(snapshot[2]), snapshot[3], snapshot[4]
+        self.wake(bool(self.signals))
         self.changed = True

@@ -1,55 +1,140 @@
-"""Interrupts: who may ask for an interrupt program, and when (chapter 9). Times are exact to the microsecond."""
+"""Interrupts: who may ask for an interrupt program, and when (chapter 9). Times are exact to the microsecond.
 
+An event asks for its program when interrupts are enabled (EI) and the event's own relay is ON; the requests stand in a
+queue and are served one after the other, in the time between two scans in which they come. With the eighth request
+the queue is closed: what comes then is lost (error 67) until the queue is empty and the main program has ended.
+"""
+
+from ..errors import QUEUE_FULL
 from ..memory import Memory
+from .faults import Faults
+from .inputs import FAST, Inputs
+from .unit import Unit
 
-FIRST_TIMED, TIMED = 26, 3  # events 26 to 28: relays SM66-68 enable, registers SD66-68 hold the period in ms
-FIRST_SWITCH = 66
-EDGES, EDGE_SWITCH, FALLING = 8, 40, 10  # events 0 to 7 and 10 to 17: rising and falling edges of X0 to X7, enabled by SM40-47
 DEPTH = 8
+FALLING = 10  # events 0 to 7 are rising edges of X0 to X7, 10 to 17 falling ones
+TIMED = {26: 66, 27: 67, 28: 68}  # event -> the register with its period in ms
+POWER_LOSS = 29
 
 
-class Interrupts:
-    """The global enable, the timed interrupts and those of the inputs' edges."""
+class Interrupts(Unit):
+    """The global enable, the queue, the timed interrupts and those of the inputs' edges."""
 
-    def __init__(self, memory: Memory):
-        self.memory = memory
+    rank = 2
+
+    def __init__(self, memory: Memory, faults: Faults, awake: list[Unit]):
+        super().__init__(awake)
+        self.memory, self.faults = memory, faults
+        self.enables = memory.model.events
         self.enabled = False
         self.routines: dict[int, str] = {}
-        self.due: list[int | None] = [None] * TIMED
+        self.timed: dict[int, int] = {}
+        self.edges: list[tuple[int, bool, int]] = []  # input, sense, event: those with a routine
+        self.due: dict[int, tuple[int, int]] = {}  # event -> its next moment, its period in us
         self.queue: list[int] = []
+        self.closed = False
+        self.inputs: Inputs | None = None  # given after both are made
+        self.time = 0
 
-    def edge(self, number: int, level: bool) -> None:
-        """An input terminal has changed; a request that is not allowed is lost."""
-        if number < EDGES and self.enabled and self.memory.lists[self.memory.model.special_bits][EDGE_SWITCH + number]:
-            self.request(number if level else FALLING + number)
+    # -- requests -----------------------------------------------------------------------------------------------
+
+    def fire(self, event: int) -> None:
+        """An event has come; a request that is not allowed is lost."""
+        enable = self.enables.get(event)
+        if self.enabled and enable is not None and self.memory.lists[self.memory.model.special_bits][enable]:
+            self.request(event)
 
     def request(self, event: int) -> None:
         """Queue a request; one without a routine is no operation."""
-        if event in self.routines and len(self.queue) < DEPTH:
-            self.queue.append(event)
+        if event not in self.routines:
+            return
+        if self.closed:
+            self.faults.note(QUEUE_FULL)
+            return
+        self.queue.append(event)
+        self.closed = len(self.queue) >= DEPTH
 
-    def restart(self, routines: dict[int, str]) -> None:
-        """STOP -> RUN: nothing is enabled until EI."""
-        self.enabled = False
-        self.routines = routines
-        self.due = [None] * TIMED
+    def ended(self) -> None:
+        """The main program has ended: a closed queue that is empty opens again."""
+        if not self.queue:
+            self.closed = False
+
+    # -- time ---------------------------------------------------------------------------------------------------
+
+    def restart(self, now: int) -> None:
+        """Nothing is enabled until EI."""
+        self.enabled = self.closed = False
+        self.due.clear()
         self.queue.clear()
+        self.time = now
 
-    def arm(self, now: int) -> None:
-        """Look at the enables after a program has run: a timer that was enabled begins its first period now."""
+    def assign(self, routines: dict[int, str]) -> None:
+        """The interrupt programs of the program that begins to run."""
+        self.routines = routines
+        self.timed = {event: register for event, register in TIMED.items() if event in self.enables}
+        self.edges = [
+            (number, rising, event)
+            for number in range(FAST)
+            for rising, event in ((True, number), (False, number + FALLING))
+            if event in routines
+        ]
+        self.wake(bool(routines))
+
+    def look(self, now: int) -> None:
+        """A timed interrupt begins its first period when it is enabled, and again when its period was changed."""
         relays, registers = self.memory.lists[self.memory.model.special_bits], self.memory.lists[self.memory.model.special_words]
-        for place in range(TIMED):
-            active = relays[FIRST_SWITCH + place] and registers[FIRST_SWITCH + place] >= 1
-            if not active:
-                self.due[place] = None
-            elif self.due[place] is None:
-                self.due[place] = now + registers[FIRST_SWITCH + place] * 1000
+        for event, register in self.timed.items():
+            period = registers[register] * 1000
+            if not relays[self.enables[event]] or period <= 0:
+                self.due.pop(event, None)
+            elif event not in self.due or self.due[event][1] != period:
+                self.due[event] = now + period, period
 
-    def take(self, until: int) -> tuple[int, str | None] | None:
-        """The next event up to a time: when, and which routine asks to run (None when it may not or there is none)."""
-        waiting = [(due, place) for place, due in enumerate(self.due) if due is not None and due <= until]
-        if not waiting:
-            return None
-        due, place = min(waiting)
-        self.due[place] = due + self.memory.lists[self.memory.model.special_words][FIRST_SWITCH + place] * 1000
-        return due, self.routines.get(FIRST_TIMED + place) if self.enabled else None
+    def _edges(self, until: int) -> list[tuple[int, int]]:
+        """The next edge of each signal that may ask for a routine, as (moment, event)."""
+        relays = self.memory.lists[self.memory.model.special_bits]
+        found = []
+        for number, rising, event in self.edges:
+            signal = self.inputs.signals.get(number)
+            if signal is not None and relays[self.enables[event]]:
+                moment = signal.time(rising, self.time, 1)
+                if moment is not None and moment <= until:
+                    found.append((moment, event))
+        return found
+
+    def next(self, until: int) -> int | None:
+        first = None
+        for moment, _ in self.due.values():
+            if moment <= until and (first is None or moment < first):
+                first = moment
+        if self.edges and self.enabled and self.inputs.signals:
+            for moment, _ in self._edges(until if first is None else first):
+                first = moment if first is None else min(first, moment)
+        return first
+
+    def act(self, now: int) -> None:
+        if self.edges and self.enabled and self.inputs.signals:
+            for moment, event in self._edges(now):
+                if moment == now:
+                    self.fire(event)
+        for event, (moment, period) in self.due.items():
+            if moment == now:
+                self.due[event] = now + period, period
+                self.fire(event)
+        self.time = now
+
+    def advance(self, now: int) -> None:
+        # Edges of this very moment are still to be asked for: `act` comes after.
+        self.time = now - 1
+
+    def edge(self, number: int, level: bool, now: int) -> None:
+        if self.routines:
+            self.fire(number if level else number + FALLING)
+
+    def snapshot(self) -> tuple:
+        return self.enabled, self.closed, dict(self.routines), dict(self.due), list(self.queue), self.time
+
+    def restore(self, snapshot: tuple) -> None:
+        self.enabled, self.closed, routines, due, queue, self.time = snapshot
+        self.assign(dict(routines))
+        self.due, self.queue[:] = dict(due), queue

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 from ..devices import Syntax
+from . import ec_fast
 from .model import Area, Model
 
 
@@ -36,10 +37,11 @@ EC20 = Model(
         "clock 10 ms": 10, "clock 100 ms": 11, "clock 1 s": 12, "clock 1 min": 13, "clock 1 h": 14, "scan toggle": 15,
         "fault": 20, "fault range": 21, "fault operand": 22, "zero": 180, "carry": 181, "borrow": 182, "bytewise": 186,
         "counter direction": 0,  # SM(n) for C(n): appendix 1, section 17
+        **ec_fast.RELAYS,
     },
     registers={
         "type": 0, "version": 1, "capacity": 2, "system error": 3, "faults": 20,
-        "scan time": 30, "least scan time": 31, "greatest scan time": 32, "constant scan": 33, "watchdog": 34, "input filter": 35,
+        "scan time": 30, "least scan time": 31, "greatest scan time": 32, "constant scan": 33, "watchdog": 34, "input filter": 35, **ec_fast.REGISTERS,
     },
     read_only_relays=_numbers((0, 15), (20, 22), 82, 83, 114, 124, (140, 171), (190, 193), 196),
     read_only_registers=_numbers((0, 5), (7, 12), (20, 26), (30, 35), 56, 57, (100, 106), 110, (115, 118), 120, (125, 128), 139, 172, 174, 191, 192),
@@ -53,8 +55,9 @@ EC20 = Model(
     instruction_ns=90,
     retained=("D", "M", "S", "T", "C"),
     type_code=20,
-    initial_registers={25: 255, 26: 255},
+    initial_registers={25: 255, 26: 255, **ec_fast.INITIAL},
     retention_limits={"ranges": 2, "counters": 200},
+    **ec_fast.EC20,
 )  # fmt: skip
 
 EC10 = replace(
@@ -70,4 +73,7 @@ EC10 = replace(
     type_code=10,
     step_surcharge=("M", 1536),  # 5.1.1: a contact on M1536 to M2047 is one step longer
     retention_limits={"ranges": 1, "bits": 320, "words": 180},
+    relays=EC20.relays | ec_fast.RELAYS_EC10,
+    registers=EC20.registers | ec_fast.REGISTERS_EC10,
+    **ec_fast.EC10,
 )  # fmt: skip

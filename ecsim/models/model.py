@@ -19,6 +19,23 @@ class Area:
         return f"{self.name}0 to {self.name}{number_text(self.name, self.count - 1)}"
 
 
+@dataclass(frozen=True, slots=True)
+class FastCounter:
+    """A high-speed counter (8.1.1): "single", "up/down" or "phases", the inputs that it counts, its reset and start input."""
+
+    mode: str
+    inputs: tuple[int, ...]
+    reset: int | None
+    start: int | None
+    khz: int  # the greatest frequency
+    hardware: bool  # whether it can count in hardware, without a comparison
+
+    @property
+    def needs(self) -> tuple[int, ...]:
+        """All inputs that it has for itself."""
+        return (*self.inputs, *(n for n in (self.reset, self.start) if n is not None))
+
+
 @dataclass(frozen=True)
 class Model:
     """One PLC model. Meanings ("carry") are keys, devices are values, so that another family is another table."""
@@ -55,6 +72,9 @@ class Model:
     fault_record: int = 5  # so many registers from "faults" on keep the codes of the last errors
     initial_registers: dict[int, int] = field(default_factory=dict)
     retention_limits: dict[str, int] = field(default_factory=dict)
+    fast_counters: dict[int, FastCounter] = field(default_factory=dict)
+    events: dict[int, int] = field(default_factory=dict)  # interrupt event -> the special relay that enables it (9.1)
+    least_ramp_ms: int = 0  # of PLSR
 
     def timer_base_us(self, number: int) -> int:
         """The time unit of a timer in microseconds."""

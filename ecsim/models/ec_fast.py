@@ -1,0 +1,41 @@
+"""The fast side of EC10 and EC20 as data: high-speed counters, interrupt events, relays and registers of chapters 8, 9 and 6.17."""
+
+from .model import FastCounter
+
+_SINGLE = {236: (0,), 237: (1,), 238: (2,), 239: (3,), 240: (4,), 241: (5,), 242: (0, 2), 243: (3, 5), 244: (0, 2, 6), 245: (3, 5, 7)}
+_PAIRS = ((0, 1), (0, 1, 2), (3, 4, 5), (0, 1, 2, 6), (3, 4, 5, 7))
+
+
+def _counter(mode: str, inputs: tuple[int, ...], khz: int, hardware: bool) -> FastCounter:
+    counting = 1 if mode == "single" else 2
+    reset, start = (*inputs[counting:], None, None)[:2]
+    return FastCounter(mode, inputs[:counting], reset, start, khz, hardware)
+
+
+# 8.1.1: which inputs a counter has, the highest frequency in kHz, whether it can count in hardware (8.1.4).
+FAST_COUNTERS = {
+    **{number: _counter("single", inputs, 50 if number < 238 else 10, number < 238) for number, inputs in _SINGLE.items()},
+    **{246 + place: _counter("up/down", inputs, 10 if place else 50, not place) for place, inputs in enumerate(_PAIRS)},
+    **{251 + place: _counter("phases", inputs, 5 if place else 30, not place) for place, inputs in enumerate(_PAIRS)},
+}
+
+# 9.1: event -> the special relay that lets it ask for its interrupt program.
+_EVENTS_EC20 = {
+    **{sense + number: 40 + number for sense in (0, 10) for number in range(8)},
+    **dict.fromkeys(range(20, 26), 65),
+    **{event: event + 40 for event in (26, 27, 28)},
+}
+_EVENTS_EC10 = _EVENTS_EC20 | {18: 63, 19: 64, 29: 56, **{event: event + 18 for event in range(30, 38)}}
+
+RELAYS = {"capture": 90, "pulse stop": 80, "pulse busy": 82, "table done": 185}
+REGISTERS = {
+    "pulses": 50, "pulses of both": 54, "position": 80, "base frequency": 84, "top frequency": 85, "ramp time": 87,
+    "table output": 180, "table value": 182, "table record": 184,
+}  # fmt: skip
+# 6.17.6: SD84 to SD87; appendix 2: SD88 and SD89. 100000 = 1 * 65536 + 34464
+INITIAL = {84: 5000, 85: 1, 86: 34464 - 65536, 87: 1000, 88: 100, 89: 100}
+
+EC20 = {"fast_counters": FAST_COUNTERS, "events": _EVENTS_EC20}
+EC10 = {"fast_counters": FAST_COUNTERS, "events": _EVENTS_EC10, "least_ramp_ms": 50}
+RELAYS_EC10 = {"clear signal": 85}
+REGISTERS_EC10 = {"segment": 56}
