@@ -37,6 +37,10 @@ class Access:
         """The source of an indexed operand's number."""
         return f"{operand.number} + {operand.index_area}[{operand.index}]"
 
+    def place(self, operand: Device | Bits) -> str:
+        """The source of an operand's number, indexed or not."""
+        return str(operand.number) if operand.index is None else self.index(operand)
+
     def can_fault(self, operand: Operand) -> bool:
         """Whether reaching the operand can end as error 65."""
         return getattr(operand, "index", None) is not None
@@ -170,7 +174,7 @@ class Access:
         if isinstance(operand, Constant):  # it holds one element, whatever the count
             return f"[{self.constant(kind, operand)}][:counted({count})]"
         _, high = self.limits(kind, operand.area)
-        number = self.index(operand) if operand.index is not None else str(operand.number)
+        number = self.place(operand)
         if isinstance(operand, Bits):
             return f"span_bits({operand.area}, {number}, {4 * operand.digits}, {count}, {kind.signed and 4 * operand.digits == kind.bits})"
         values = self.bits(operand.area) if kind is BOOL else operand.area
@@ -190,7 +194,7 @@ class Access:
     def store_span(self, kind: DataType, operand: Device | Bits, text: str, resets: bool, count: str = "") -> list[str]:
         """Statements that write a list of values, `count` if that is known, each in the signed range of `kind`'s width, from an operand on."""
         _, high = self.limits(kind, operand.area)
-        number = self.index(operand) if operand.index is not None else str(operand.number)
+        number = self.place(operand)
         if isinstance(operand, Bits):
             return [f"put_span_bits({operand.area}, {number}, {4 * operand.digits}, {text})"]
         if resets and operand.area in ("T", "C"):

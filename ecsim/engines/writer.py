@@ -97,6 +97,9 @@ class Writer:
         definition = instruction.definition
         operands = {spec.name: (spec, operand) for spec, operand in zip(definition.operands, instruction.operands, strict=True)}
         for name, word in zip(self._parameters(instruction), definition.taken, strict=True):
+            if word.upper() in operands and word.islower():
+                fields[name] = self.access.place(operands[word.upper()][1])
+                continue
             if word not in operands:
                 fields[name] = self._special(instruction, word, flow)
                 continue

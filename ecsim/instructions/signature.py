@@ -15,7 +15,8 @@ left. After the type may follow, in this order:
 A word in small letters is no operand. Left of the arrow it is something else that the function is given, right of it
 something that the function gives after its values: a flag by its meaning (carry), `state`, which the instruction keeps
 from one execution to the next (False at first), `now`, the simulated time in microseconds, or `claim`, the number under
-which a command holds something until its flow goes.
+which a command holds something until its flow goes; the name of an operand in small letters (s3) is the number of its
+device.
 """
 
 import re
