@@ -12,8 +12,9 @@ class History:
 
     def __init__(self, take: Callable[[], Any], put: Callable[[Any], None]):
         self.take, self.put = take, put
-        self.frames: list[tuple[int, Any]] = []
-        self.actions: list[tuple[int, Callable[[], None]]] = []
+        self.frames: list[tuple[int, int, Any]] = []  # scan, how many actions it contains, what was taken
+        self.actions: list[tuple[int, int, Callable[[], None]]] = []  # scan, number, action
+        self.noted = 0
 
     def clear(self) -> None:
         """Forget everything: the program or the plant is another one."""
@@ -22,16 +23,17 @@ class History:
 
     def note(self, scan: int, action: Callable[[], None]) -> None:
         """An action from outside, done before scan number `scan`."""
-        self.actions.append((scan, action))
+        self.actions.append((scan, self.noted, action))
+        self.noted += 1
 
     def tick(self, scan: int) -> None:
         """Called before each scan: takes a keyframe when one is due."""
         if scan % EVERY == 0 or not self.frames:
-            self.frames.append((scan, self.take()))
+            self.frames.append((scan, self.noted, self.take()))
             if len(self.frames) > KEEP:
                 del self.frames[0]
-                first = self.frames[0][0]
-                self.actions = [entry for entry in self.actions if entry[0] >= first]
+                first = self.frames[0][1]
+                self.actions = [entry for entry in self.actions if entry[1] >= first]
 
     @property
     def first(self) -> int | None:
@@ -40,20 +42,20 @@ class History:
 
     def go(self, scan: int, step: Callable[[], None]) -> bool:
         """Go back to just before scan number `scan`, running forward again from the keyframe with `step`; what came later is dropped."""
-        while self.frames and self.frames[-1][0] > scan:
-            self.frames.pop()
-        if not self.frames:
+        if self.first is None or scan < self.first:
             return False
-        at, frame = self.frames[-1]
+        while self.frames[-1][0] > scan:
+            self.frames.pop()
+        at, contained, frame = self.frames[-1]
         if at == scan:
             self.frames.pop()
         self.put(frame)
-        journal = [entry for entry in self.actions if at <= entry[0] <= scan]
         self.actions = [entry for entry in self.actions if entry[0] <= scan]
+        journal = [entry for entry in self.actions if entry[1] >= contained]
         place = 0
         for number in range(at, scan + 1):
             while place < len(journal) and journal[place][0] == number:
-                journal[place][1]()
+                journal[place][2]()
                 place += 1
             if number < scan:
                 step()

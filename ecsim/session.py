@@ -1,11 +1,13 @@
 """Session: a Plc, its plant and those who look on, as fast as possible or paced. The only module that reads the wall clock."""
 
 import contextlib
+import copy
 import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import takewhile
 from operator import itemgetter
 from typing import Any, Protocol
 
@@ -21,7 +23,7 @@ LOG = 500
 
 
 class Plant(Protocol):
-    """What a session needs of a machine."""
+    """What a session needs of a machine. `state()` and `restore(state)` may be there too, for the way back; else its attributes are copied."""
 
     wiring: Any
 
@@ -52,7 +54,7 @@ class Session:
     def __init__(self, plc: Plc, plant: Plant | None = None, name: str = "lab", speed: float | None = 1.0, record: Recording | None = None):
         self.plc, self.plant, self.name = plc, plant, name
         self.recording = record
-        self._speed = speed
+        self._speed = _fitting_speed(speed)
         self._plant_on = plant is not None
         self.state = "stopped"
         self.error: Exception | None = None
@@ -64,8 +66,10 @@ class Session:
         self._actions: deque[Callable[[Plc], Any]] = deque()
         self._observers: list[Callable[[Session], Any]] = []
         self._thread: threading.Thread | None = None
-        self._task: Any = None
-        self._ending = False
+        self._task: Any = None  # keeps the loop alive where there are no threads
+        self._loop: object | None = None  # the loop that may go on; any other one ends at its next turn
+        self._asked = False  # observers are to be called by the loop
+        self._showing = False
         self._initial = self._take()
         self.history = History(self._take, self._put)
         self._bind()
@@ -136,14 +140,13 @@ class Session:
                     self.step_since.pop(f"S{number}", None)
 
     def _take(self) -> tuple:
-        plant = self.plant.state() if self.plant is not None else None
+        plant = _state(self.plant)
         return self.plc.snapshot(), plant, self._plant_on, dict(self.step_since), list(self.log)
 
     def _put(self, frame: tuple) -> None:
         snapshot, plant, on, since, log = frame
         self.plc.restore(snapshot)
-        if plant is not None:
-            self.plant.restore(plant)
+        _restore(self.plant, plant)
         self._plant_on = on
         self._last_driven = self._last_sensors = None
         self.step_since = dict(since)
@@ -157,22 +160,23 @@ class Session:
     def start(self) -> "Session":
         """Begin to run in a thread of its own (where there are no threads, as a task of the event loop); a session of the same name ends first."""
         with _registry:
-            former = _sessions.get(self.name)
-            if former is not None and former is not self:
-                former._end()
-            _sessions[self.name] = self
-        if self.state in ("running", "paused"):
-            return self
-        self._ending, self.error = False, None
-        self.state = "running"
-        thread = threading.Thread(target=self._drive, name=f"ecsim {self.name}", daemon=True)
+            former, _sessions[self.name] = _sessions.get(self.name), self
+        if former is not None and former is not self:
+            former._end()
+        with self._lock:
+            if self._loop is not None:
+                return self
+            self.error, self.state = None, "running"
+            loop = self._loop = object()
+        thread = threading.Thread(target=self._drive, args=(loop,), name=f"ecsim {self.name}", daemon=True)
+        self._thread = thread
         try:
             thread.start()
-            self._thread = thread
         except RuntimeError:  # Pyodide has no threads
             import asyncio
 
-            self._task = asyncio.ensure_future(self._drive_task())
+            self._thread = None
+            self._task = asyncio.ensure_future(self._drive_task(loop))
         return self
 
     def stop(self) -> None:
@@ -185,13 +189,13 @@ class Session:
             raise self.error
 
     def _end(self) -> None:
-        self._ending = True
+        self._loop = None
         self._wake.set()
-        if self._thread is not None and self._thread is not threading.current_thread():
-            self._thread.join(timeout=5)
-        self._thread = self._task = None
         if self.state != "failed":
             self.state = "stopped"
+        thread, self._thread = self._thread, None
+        if thread is not None and thread is not threading.current_thread():
+            thread.join(timeout=5)
         self._show()
 
     def run(self) -> None:
@@ -199,8 +203,7 @@ class Session:
         if self.state == "failed":
             raise EcsimError(f"the session {self.name!r} has failed: {self.error}; reset() begins anew")
         self._do(lambda plc: plc.run())
-        if self._thread is None and self._task is None:
-            self.start()
+        self.start()
         self.state = "running"
         self._wake.set()
 
@@ -222,18 +225,22 @@ class Session:
         self._show()
 
     def next_step(self, limit_ms: float = 600_000) -> str | None:
-        """Pause, and scan until a step begins or ends; the step that began or ended, None when none does within the limit."""
+        """Pause, and scan until a step begins or ends: the step that began, or else the one that ended.
+
+        None when none does within the limit, when the program has no steps and when the PLC is in STOP.
+        """
         self.pause()
+        changes: list[StepChange] = []
         with self._lock:
             self._drain()
-            began, last = self.plc.clock[0], self.log[-1] if self.log else None
-            while self.plc.clock[0] - began < limit_ms * 1000:
+            end = self.plc.clock[0] + limit_ms * 1000
+            while not changes and self.plc.clock[0] < end:
                 self._scan()
-                if self.log and self.log[-1] is not last:
-                    self._show()
-                    return self.log[-1].step
+                changes = list(takewhile(lambda change: change.scan == self.plc.scans, reversed(self.log)))
+                if not (self._steps and self.plc.running):
+                    break
         self._show()
-        return None
+        return max(changes, key=lambda change: change.active).step if changes else None
 
     def back(self, scans: int = 1) -> bool:
         """Pause, and go back by so many scans; false when that is further than is remembered."""
@@ -245,12 +252,10 @@ class Session:
         return done
 
     def reset(self) -> None:
-        """Everything as it was when the session was made, in RUN."""
+        """Time, inputs and plant as they were when the session was made; the PLC is switched off and on, and begins in RUN."""
         with self._lock:
             self._actions.clear()
             self.history.clear()
-            self.log.clear()
-            self.step_since.clear()
             self._bind()
             self._put((*self._initial[:3], {}, []))
             if self.recording is not None:
@@ -267,9 +272,7 @@ class Session:
 
     @speed.setter
     def speed(self, value: float | None) -> None:
-        if value is not None and not 0 < value <= 1_000_000:
-            raise EcsimError(f"the speed is {value!r}; it is a factor above 0, or None for as fast as it goes")
-        self._speed = value
+        self._speed = _fitting_speed(value)
         self._wake.set()
 
     @property
@@ -317,7 +320,11 @@ class Session:
             action(self.plc)
 
     def observe(self, callback: "Callable[[Session], Any]") -> Callable[[], None]:
-        """Have `callback(session)` called after changes, at most 30 times a second, in the session's thread; returns what ends it."""
+        """Have `callback(session)` called after changes; returns what ends it.
+
+        While scans run that is at most 30 times a second; it happens in the session's thread, or in the caller's where none runs.
+        A callback may use every method of the session; it is not called again for what it does itself.
+        """
         self._observers.append(callback)
 
         def end() -> None:
@@ -327,8 +334,18 @@ class Session:
         return end
 
     def _show(self) -> None:
-        for callback in list(self._observers):
-            callback(self)
+        """Call the observers, or have the session's thread do it."""
+        thread = self._thread
+        if thread is not None and thread is not threading.current_thread():
+            self._asked = True
+            self._wake.set()
+        elif not self._showing:
+            self._asked, self._showing = False, True
+            try:
+                for callback in list(self._observers):
+                    callback(self)
+            finally:
+                self._showing = False
 
     @contextlib.contextmanager
     def held(self) -> Iterator[Plc]:
@@ -338,47 +355,51 @@ class Session:
 
     # -- the loop -----------------------------------------------------------------------------------------------
 
-    def _drive(self) -> None:
-        for wait in self._turns():
+    def _drive(self, loop: object) -> None:
+        for wait in self._turns(loop):
             if wait:
                 self._wake.wait(wait)
                 self._wake.clear()
 
-    async def _drive_task(self) -> None:
+    async def _drive_task(self, loop: object) -> None:
         import asyncio
 
-        for wait in self._turns():
+        for wait in self._turns(loop):
             await asyncio.sleep(wait)
 
-    def _turns(self) -> Iterator[float]:
+    def _turns(self, loop: object) -> Iterator[float]:
         """One turn a frame: actions, the scans that are due, observers; yields how long to wait."""
         try:
             deadline, shown = time.perf_counter(), 0.0
             debt = 0.0  # simulated us that are due
-            while not self._ending:
+            while self._loop is loop:
                 now = time.perf_counter()
-                if self.state != "running":
-                    deadline, debt = now, 0.0
-                    yield 0.25
-                    continue
-                with self._lock:
-                    self._drain()
-                    debt = self._catch_up(now, deadline, debt)
+                running = self.state == "running"
+                if running:
+                    with self._lock:
+                        self._drain()
+                        debt = self._catch_up(loop, now, deadline, debt)
+                else:
+                    debt = 0.0
                 deadline = now
-                if time.perf_counter() - shown >= FRAME_S:
+                if self._asked or (running and time.perf_counter() - shown >= FRAME_S):
                     shown = time.perf_counter()
                     self._show()
-                yield self._pause_s(debt)
-        except Exception as error:
-            self.error, self.state = error, "failed"
-            with contextlib.suppress(Exception):
+                yield self._pause_s(debt) if running else 0.25
+            if self._loop is None:  # an observer may have ended it
                 self._show()
+        except Exception as error:
+            if self._loop is loop:
+                self._loop = None
+                self.error, self.state = error, "failed"
+                with contextlib.suppress(Exception):
+                    self._show()
 
-    def _catch_up(self, now: float, deadline: float, debt: float) -> float:
+    def _catch_up(self, loop: object, now: float, deadline: float, debt: float) -> float:
         """Do the scans that are due; what cannot be made up for is given up."""
         speed = self._speed
         if speed is None:
-            while time.perf_counter() - now < SLICE_S and self.state == "running" and not self._ending:
+            while time.perf_counter() - now < SLICE_S and self.state == "running" and self._loop is loop:
                 self._scan()
             return 0.0
         debt += (now - deadline) * 1e6 * speed
@@ -388,7 +409,7 @@ class Session:
         while debt >= self.plc.period_us:
             debt -= self.plc.period_us
             self._scan()
-            if self.state != "running" or self._ending:
+            if self.state != "running" or self._loop is not loop:
                 break
             if time.perf_counter() - now > LATE_S:
                 self.late += 1
@@ -405,6 +426,25 @@ class Session:
         return f"<Session {self.name!r} {self.state}>"
 
 
-def session(name: str = "lab") -> Session | None:
-    """The running session of that name, None when there is none."""
-    return _sessions.get(name)
+def _fitting_speed(speed: float | None) -> float | None:
+    if speed is not None and not (isinstance(speed, (int, float)) and 0 < speed <= 1_000_000):
+        raise EcsimError(f"the speed is {speed!r}; it is a factor above 0, or None for as fast as it goes")
+    return speed
+
+
+def _state(plant: Any) -> Any:
+    """What a plant remembers: its own `state()`, or a copy of its attributes."""
+    if plant is None:
+        return None
+    return plant.state() if callable(getattr(plant, "state", None)) else copy.deepcopy(vars(plant))
+
+
+def _restore(plant: Any, state: Any) -> None:
+    """Give a plant back what `_state` got from it."""
+    if plant is None:
+        return
+    if callable(getattr(plant, "restore", None)):
+        plant.restore(state)
+    else:
+        vars(plant).clear()
+        vars(plant).update(copy.deepcopy(state))
