@@ -6,8 +6,10 @@ from . import (  # noqa: F401
     checksums,
     compare,
     contacts,
+    control,
     conversion,
     counters,
+    floating_point,
     flow,
     master_control,
     sfc,
@@ -15,6 +17,7 @@ from . import (  # noqa: F401
     timers,
     transfer,
     word_bits,
+    word_logic,
 )
 from .define import TABLE, Definition
 

@@ -60,7 +60,7 @@ def _check_stack(count: int, size: int) -> None:
         raise Fault(STACK)
 
 
-@value("PUSH", "S1:INT D:INT[D V]*{max(S2,0)+1} S2:INT -> D carry", steps=7, section="6.2.10", as_stored=True)
+@value("PUSH", "S1:INT D:INT[D V]*{max(S2,0)+1} S2:INT -> D carry", steps=7, section="6.2.10", as_stored=True, faults=(STACK,))
 def push(s1, d, s2):
     """S1 becomes the top of the stack at D, whose count grows by 1; carry tells that it was full already."""
     count = d[0]
@@ -72,7 +72,7 @@ def push(s1, d, s2):
     return d, False
 
 
-@value("FIFO", "D1:INT[D V]*{max(S,0)+1} D2:INT S:INT -> D1 D2 zero", steps=7, section="6.2.11", as_stored=True)
+@value("FIFO", "D1:INT[D V]*{max(S,0)+1} D2:INT S:INT -> D1 D2 zero", steps=7, section="6.2.11", as_stored=True, faults=(STACK,))
 def fifo(d1, d2, s):
     """D2 becomes the first element of the queue at D1, the others move up and the last becomes 0; zero tells that the queue is empty."""
     count = d1[0]
@@ -82,7 +82,7 @@ def fifo(d1, d2, s):
     return [count - 1, *d1[2:], 0], d1[1], count == 1
 
 
-@value("LIFO", "D1:INT[D V]*{max(S,0)+1} D2:INT S:INT -> D1 D2 zero", steps=7, section="6.2.12", as_stored=True)
+@value("LIFO", "D1:INT[D V]*{max(S,0)+1} D2:INT S:INT -> D1 D2 zero", steps=7, section="6.2.12", as_stored=True, faults=(STACK,))
 def lifo(d1, d2, s):
     """D2 becomes the top of the stack at D1, whose count shrinks by 1; zero tells that the stack is empty."""
     count = d1[0]
@@ -96,7 +96,7 @@ def lifo(d1, d2, s):
 _STRING = "S1:INT-const-KnSM-Z*S3 D:INT-Z*S2 S2:INT=0..32767 S3:INT=0..32767 -> D"
 
 
-@value("WSFR", _STRING, steps=9, section="6.2.13", as_stored=True, check=same_digits(0, 1))
+@value("WSFR", _STRING, steps=9, section="6.2.13", as_stored=True, check=same_digits(0, 1), faults=(OPERAND,))
 def wsfr(s1, d, s2, s3):
     """The S2 elements from D on move down by S3 places, and the S3 elements from S1 on enter at the upper end."""
     if s3 > s2:
@@ -104,7 +104,7 @@ def wsfr(s1, d, s2, s3):
     return d[s3:] + s1
 
 
-@value("WSFL", _STRING, steps=9, section="6.2.14", as_stored=True, check=same_digits(0, 1))
+@value("WSFL", _STRING, steps=9, section="6.2.14", as_stored=True, check=same_digits(0, 1), faults=(OPERAND,))
 def wsfl(s1, d, s2, s3):
     """The S2 elements from D on move up by S3 places, and the S3 elements from S1 on enter at the lower end."""
     if s3 > s2:
