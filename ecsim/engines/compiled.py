@@ -244,7 +244,8 @@ class _Rung:
         flow = self._used()
         if self.instruction.pulse >= 0:
             self.lines += self.c.at_rise(self.instruction, flow, lines)
-        elif flow == "True":
+            return
+        if flow == "True":
             self.lines += lines
         elif self.last == (flow, len(self.lines)):  # one `if` around several outputs of one flow
             self.lines += indented(lines)
