@@ -43,8 +43,11 @@ def fault_codes(definition: Definition) -> dict[int, str]:
     """The execution errors that an instruction can end with -> where they come from, as far as its row and its function tell."""
     codes = dict.fromkeys(definition.faults, "")
     codes |= dict.fromkeys(_raised(definition.function, set()), "")
-    if any(spec.span for spec in definition.operands):
+    if any(spec.range and spec.plain and spec.read and spec.areas != {"const"} for spec in definition.operands):
+        codes.setdefault(OPERAND, "a value outside its range")
+    if any(spec.span in {other.name for other in definition.operands} for spec in definition.operands):
         codes.setdefault(OPERAND, "a number of elements below zero")
+    if any(spec.span for spec in definition.operands):
         codes.setdefault(RANGE, "elements beyond the last device")
     if any(spec.indexed for spec in definition.operands):
         codes.setdefault(RANGE, "an index that leads beyond the devices")
@@ -251,6 +254,8 @@ class Page(Shown):
             f"steps: {steps}",
             form,
         ]
+        if row.after:
+            facts.append("executed once more when the flow has gone")
         if row.cleared:
             facts.append("cleared when its master control is OFF and when its step has been left")
         family = [other.mnemonic for other in TABLE.values() if other.function is row.function and other is not row]
@@ -288,8 +293,12 @@ def _remark(spec: OperandSpec) -> str:
     if spec.range:
         area = "" if "const" in spec.areas else spec.order[0]
         remarks.append(f"{area}{spec.range[0]} to {area}{spec.range[1]}")
-    if spec.span:
-        remarks.append(f"the first of {spec.span}")
+    if spec.whole:
+        remarks.append(f"a Kn string as K{spec.type.bits // 4}")
+    if spec.kind == "TEXT":
+        remarks.append(f"at most {spec.span}")
+    elif spec.span:
+        remarks.append("the first of several" if str(spec.span).startswith("{") else f"the first of {spec.span}")
     return ", ".join(remarks)
 
 
