@@ -1,7 +1,7 @@
 // The sequential function chart: active steps lit, what the selected one waits for in words, and the log of steps taken.
 
 panels.chart = (place, layout, page) => {
-  const { section, body, sub } = frame(place, { title: "Chart", sub: layout.about, key: "chart" });
+  const { body, sub } = frame(place, { title: "Chart", key: "chart" });
   body.classList.add("split");
   body.innerHTML = `
     <div class="main scroll"></div>
@@ -9,32 +9,56 @@ panels.chart = (place, layout, page) => {
       <h3 class="who"></h3><dl class="facts"></dl><hr>
       <h3>Steps taken</h3><ol class="log" data-testid="log"></ol>
     </aside>`;
-  const drawing = new Drawing(body.querySelector(".main"), layout.svg);
+  const main = body.querySelector(".main");
   const [who, facts, log] = [".who", ".facts", ".log"].map((part) => body.querySelector(part));
+  const boxes = new Map(); // step -> its element, for those that are drawn
+  let drawing;
   let state = {};
   let chosen = null; // null follows the active step
 
-  const boxes = new Map(); // step -> its element, for those that are drawn
-  for (const [device, step] of Object.entries(layout.steps)) {
-    const node = drawing.find(device);
-    if (!node) continue;
-    boxes.set(device, node);
-    node.dataset.testid = `step-${device}`;
-    node.setAttribute("role", "button");
-    node.tabIndex = -1;
-    node.addEventListener("click", () => {
-      chosen = chosen === device ? null : device;
-      explain();
-    });
-    node.addEventListener("keydown", (event) => {
-      if (event.key !== "Enter") return;
-      event.preventDefault();
-      node.dispatchEvent(new MouseEvent("click"));
-    });
-    set(node, "data-row", step.row);
-    set(node, "data-col", step.col);
+  function draw(svg) {
+    drawing = new Drawing(main, svg);
+    drawing.apply(state);
+    boxes.clear();
+    for (const [device, step] of Object.entries(layout.steps)) {
+      const node = drawing.find(device);
+      if (!node) continue;
+      boxes.set(device, node);
+      const box = node.querySelector(".box");
+      node.dataset.testid = `step-${device}`;
+      node.dataset.row = Math.round(box.getAttribute("y"));
+      node.dataset.col = Math.round(box.getAttribute("x"));
+      node.setAttribute("role", "treeitem");
+      node.setAttribute("tabindex", boxes.size === 1 ? "0" : "-1");
+      node.addEventListener("click", () => choose(device));
+    }
+    mark();
   }
-  roving(drawing.svg, () => [...boxes.values()]);
+  main.setAttribute("role", "tree");
+  main.setAttribute("aria-label", "Steps");
+  roving(main, () => [...boxes.values()]);
+  main.addEventListener("keydown", (event) => {
+    const device = event.target.dataset?.device;
+    if (event.key !== "Enter" || !boxes.has(device)) return;
+    event.preventDefault();
+    choose(device);
+  });
+  function choose(device) {
+    chosen = chosen === device ? null : device;
+    mark();
+    explain();
+  }
+  function mark() {
+    const active = state.active ?? [];
+    for (const [device, node] of boxes) {
+      const words = `${device} ${layout.steps[device].name}`.trim();
+      set(node, "data-on", active.includes(device) ? "" : null);
+      set(node, "data-selected", device === chosen ? "" : null);
+      set(node, "aria-selected", String(device === chosen));
+      set(node, "aria-label", active.includes(device) ? `${words}, active` : words);
+    }
+  }
+  const sizes = fitting("chart", main, page);
 
   function explain() {
     const active = state.active ?? [];
@@ -42,14 +66,13 @@ panels.chart = (place, layout, page) => {
     if (!device) return;
     const step = layout.steps[device];
     const now = state[`${device}.now`];
-    for (const [other, node] of boxes) set(node, "data-selected", other === chosen ? "" : null);
     write(who, step.name ? `${device} · ${step.name}` : device);
     const lines = [];
     if (now) lines.push(["active", `<b class="act">${seconds(now.elapsed_us, 2)} s</b> · ${number(now.scans)} ${now.scans === 1 ? "scan" : "scans"}`]);
     else lines.push(["active", "no"]);
     for (const [name, output, on] of now?.outputs ?? step.outputs.map(([name, output]) => [name, output, null]))
       lines.push(["output", `${named(name, output)}${on === null ? "" : on ? ' <b class="on">on</b>' : " off"}`]);
-    for (const text of now?.waits ?? []) lines.push(["waits for", text.map(([name, device, words]) => (device ? `${named(name, device)} ${escaped(words)}` : escaped(words))).join(" ")]);
+    for (const text of now?.waits ?? []) if (text.length) lines.push(["waits for", text.map(([name, device, words]) => (device ? `${named(name, device)} ${escaped(words)}` : escaped(words))).join("<br>")]);
     const usual = state[`${device}.usual`];
     if (usual) lines.push(["usual", `${seconds(usual[0], 2)} s, ${number(usual[1])} ${usual[1] === 1 ? "time" : "times"}`]);
     if (step.then.length) lines.push(["then", step.then.map((one) => `<span class="mono">${escaped(one)}</span>`).join(" or ")]);
@@ -60,20 +83,19 @@ panels.chart = (place, layout, page) => {
   return {
     apply(changes, now) {
       state = now;
-      drawing.apply(changes);
+      if (changes.svg) draw(changes.svg);
+      else drawing?.apply(changes);
       if (changes.active) {
         write(sub, `${changes.active.length} of ${Object.keys(layout.steps).length} active`);
-        for (const [device, node] of boxes) {
-          set(node, "data-on", changes.active.includes(device) ? "" : null);
-          const words = `${device} ${layout.steps[device].name}`.trim();
-          set(node, "aria-label", changes.active.includes(device) ? `${words}, active` : words);
-        }
+        mark();
       }
       explain();
       if (changes.log)
         log.innerHTML = changes.log
-          .map(([time_us, from, to, why]) => `<li><span>${seconds(time_us)}</span><span><span class="mono">${escaped(from ? `${from} → ${to}` : to)}</span><small>${escaped(why)}</small></span></li>`)
+          .map(([time_us, from, to, why]) => `<li><span>${seconds(time_us)}</span><span><span class="mono">${escaped(from && to ? `${from} → ${to}` : to || `${from} ended`)}</span><small>${escaped(why)}</small></span></li>`)
           .join("");
     },
+    rest: sizes.rest,
+    close: sizes.close,
   };
 };

@@ -2,73 +2,95 @@
 
 from __future__ import annotations
 
+from ecsim.devices import Device
+from ecsim.views.flows import Transition
+from ecsim.views.sfc import Chart as Drawing
 from ecsim.views.sfc import chart
 
-from .conditions import Contact, phrases, sections, sentence
+from .history import Change
 from .panel import Part
 from .rig import PREFIX, Rig
+from .waiting import phrases, recorded, sentence
 
 LOG_LENGTH = 8
+NARROWEST, WIDEST = 300, 1400
 
 
 class Chart(Part):
-    """The chart as a drawing; `<step>.now` says of an active step what it does and waits for."""
+    """The chart as a drawing, laid out for the page's width; `<step>.now` says of an active step what it does and waits for."""
 
     key = "chart"
 
     def __init__(self, rig: Rig):
         super().__init__(rig)
-        self.drawing = chart(rig.program)
-        self.svg = self.drawing.svg(PREFIX)
-        self.sections = sections(rig.program)
-        self._logged: tuple[int, int] = (-1, -1)
+        self._drawn = self._draw(320)
+        drawing = self._drawn[1]
+        self.labels = drawing.labels
+        self.transitions: dict[str, list[Transition]] = {}
+        self.outputs: dict[str, list[str]] = {}
+        for step in drawing.steps:
+            for device in map(str, step.devices):
+                self.transitions.setdefault(device, []).extend(step.transitions)
+                shown = self.outputs.setdefault(device, [])
+                targets = [action.word.operands[0] for action in step.actions if action.word.operands]
+                shown += [str(target) for target in targets if self._is_bit(target) and str(target) not in shown]
+        self._logged: Change | None = None
         self._log: list[list] = []
 
+    def _is_bit(self, operand: object) -> bool:
+        return isinstance(operand, Device) and operand.index is None and self.rig.plc.model.areas[operand.area].kind != "word"
+
+    def _draw(self, width: int) -> tuple[int, Drawing, str]:
+        drawing = chart(self.rig.program)
+        return width, drawing, drawing.svg(PREFIX, width)
+
     def layout(self):
-        steps = {
-            device: {"name": self.rig.step_name(device), "outputs": self._outputs(device), "then": self.sections[device].targets}
-            for device in self.rig.charted
+        return {
+            "steps": {
+                device: {
+                    "name": self.rig.step_name(device),
+                    "outputs": [[self.rig.name(output), output] for output in outputs],
+                    "then": list(dict.fromkeys(str(step) for transition in self.transitions[device] for step in transition.steps)),
+                }
+                for device, outputs in self.outputs.items()
+            }
         }
-        return {"svg": self.svg, "steps": steps}
 
     def frame(self):
-        rig = self.rig
-        active = rig.active()
-        entries = {"active": active, "log": self._steps_taken(), **self.drawing.state(rig.plc)}
+        rig, (_, drawing, svg) = self.rig, self._drawn
+        active = [device for device in rig.active() if device in self.outputs]
+        met = recorded(rig.plc.trace)
+        entries = {"svg": svg, "active": active, "log": self._steps_taken(), **drawing.state(rig.session)}
         for device in active:
             elapsed_us, scans = rig.since(device)
             entries[f"{device}.now"] = {
                 "elapsed_us": elapsed_us,
                 "scans": scans,
-                "outputs": [[name, output, rig.bit(output)] for name, output in self._outputs(device)],
-                "waits": [phrases(transition, rig.name, self._met) for transition in self.sections[device].transitions],
+                "outputs": [[rig.name(output), output, rig.bit(output)] for output in self.outputs[device]],
+                "waits": [phrases(transition, self.labels, met) for transition in self.transitions[device]],
             }
         entries.update((f"{device}.usual", [round(mean_us), count]) for device, (mean_us, count) in rig.times.usual.items())
         return entries
 
-    def _outputs(self, device: str) -> list[list[str]]:
-        return [[self.rig.name(output), output] for output in self.sections[device].actions]
-
-    def _met(self, contact: Contact) -> bool:
-        trace = self.rig.plc.trace
-        if trace is None:
-            return False
-        return bool(trace.closed[contact.position] if contact.edge is None else trace.flow[contact.edge])
+    def on_fit(self, width):
+        """Lay the chart out anew for a width in px."""
+        width = min(max(int(width), NARROWEST), WIDEST)
+        if width != self._drawn[0]:
+            self._drawn = self._draw(width)
 
     def _steps_taken(self) -> list[list]:
         changes = self.rig.times.changes
-        key = len(changes), changes[0].time_us if changes else -1
-        if key != self._logged:
-            self._logged = key
+        newest = changes[0] if changes else None
+        if newest is not self._logged:
+            self._logged = newest
             self._log = [
-                [change.time_us, " ".join(change.left), " ".join(change.entered) or "none", self._why(change)]
-                for change in changes[:LOG_LENGTH]
+                [change.time_us, " ".join(change.left), " ".join(change.entered), self._why(change)] for change in changes[:LOG_LENGTH]
             ]
         return self._log
 
-    def _why(self, change) -> str:
-        for step in change.left:
-            for transition in self.sections[step].transitions if step in self.sections else ():
-                if set(transition.targets) & set(change.entered):
-                    return sentence(phrases(transition, self.rig.name))
+    def _why(self, change: Change) -> str:
+        for device in change.left:
+            for transition in self.transitions.get(device, ()):
+                if {str(step) for step in transition.steps} & set(change.entered):
+                    return sentence(transition, self.labels)
         return ""

@@ -50,15 +50,7 @@ panels.ladder = (place, layout, page) => {
     if (strip) body.scrollTop = Math.max(0, strip.getBoundingClientRect().top - body.getBoundingClientRect().top + body.scrollTop - 8);
   }
 
-  let asked;
-  const fit = () => {
-    const width = 4 * Math.floor((body.clientWidth - 1) / 4);
-    if (width <= 0 || width === asked) return;
-    asked = width;
-    page.say("ladder", "fit", { width });
-  };
-  const sizes = new ResizeObserver(() => requestAnimationFrame(fit));
-  sizes.observe(body);
+  const sizes = fitting("ladder", body, page);
 
   return {
     apply(changes, now) {
@@ -70,10 +62,7 @@ panels.ladder = (place, layout, page) => {
         track();
       }
     },
-    rest(dead) {
-      if (dead) asked = undefined;
-      else fit();
-    },
-    close: () => sizes.disconnect(),
+    rest: sizes.rest,
+    close: sizes.close,
   };
 };

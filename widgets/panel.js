@@ -84,6 +84,26 @@ class Drawing {
   }
 }
 
+// Tells Python the room that a drawing has, again whenever it changes; Python lays the drawing out for it.
+function fitting(part, body, page) {
+  let asked;
+  const fit = () => {
+    const width = 4 * Math.floor((body.clientWidth - 1) / 4);
+    if (width <= 0 || width === asked || page.dead) return;
+    asked = width;
+    page.say(part, "fit", { width });
+  };
+  const sizes = new ResizeObserver(() => requestAnimationFrame(fit));
+  sizes.observe(body);
+  return {
+    rest(dead) {
+      if (dead) asked = undefined;
+      else fit();
+    },
+    close: () => sizes.disconnect(),
+  };
+}
+
 // One stop of Tab; the arrows move among `nodes()` inside it. Each node tells its place by data-row and data-col.
 function roving(root, nodes) {
   const enter = (node) => {

@@ -1,0 +1,76 @@
+"""The chart's panel: which steps are active, what they do and wait for, which were taken."""
+
+import pytest
+from ecsim_widgets.chart import Chart
+from ecsim_widgets.ladder import Ladder
+
+
+@pytest.fixture
+def holding(rig):
+    """A rig with the machine in S20."""
+    rig.session.scan(3)
+    rig.put("X0", 1)
+    rig.session.scan(2)
+    rig.put("X0", 0)
+    rig.session.scan(4)
+    return rig
+
+
+def test_every_step_has_its_name_outputs_and_followers(rig):
+    steps = Chart(rig).layout()["steps"]
+    assert list(steps) == ["S0", "S20"]
+    assert steps["S20"] == {"name": "hold it", "outputs": [["", "Y2"], ["Settle", "T0"]], "then": ["S0"]}
+
+
+def test_the_active_step_tells_what_it_does_and_waits_for(holding):
+    frame = Chart(holding).frame()
+    assert frame["active"] == ["S20"]
+    assert frame["S20:class"] == "step active"
+    now = frame["S20.now"]
+    assert now["outputs"] == [["", "Y2", 1], ["Settle", "T0", 0]]
+    assert now["waits"] == [[("Settle", "T0", "on")]]
+    assert now["elapsed_us"] == now["scans"] * 10_000 > 0
+
+
+def test_a_step_that_is_not_active_says_nothing_of_now(holding):
+    assert "S0.now" not in Chart(holding).frame()
+
+
+def test_the_log_tells_the_steps_taken_and_why(holding):
+    newest = Chart(holding).frame()["log"][0]
+    assert newest[1:] == ["S0", "S20", "X0 on"]
+
+
+def test_a_step_back_takes_the_log_back(holding):
+    chart = Chart(holding)
+    holding.session.back(6)
+    frame = chart.frame()
+    assert frame["active"] == ["S0"]
+    assert [entry[2] for entry in frame["log"]] == ["S0"]
+
+
+@pytest.mark.parametrize("part", [Chart, Ladder])
+def test_a_drawing_is_laid_out_for_the_pages_width(rig, part):
+    panel = part(rig)
+    panel.receive("fit", {"width": 640})
+    assert ' width="640"' in panel.frame()["svg"]
+    before = panel.frame()["svg"]
+    panel.receive("fit", {"width": 640})
+    assert panel.frame()["svg"] is before
+
+
+def test_the_ladder_shows_the_power_of_the_last_scan(rig):
+    ladder = Ladder(rig)
+    coil = next(i.position for i in rig.instructions if str(i) == "OUT Lamp")
+    rig.session.scan()
+    assert ladder.frame()[f"e{coil}:class"] == "coil open"
+    rig.put("X5", 1)
+    rig.session.scan(2)
+    assert ladder.frame()[f"e{coil}:class"] == "coil flow"
+
+
+def test_the_ladder_knows_where_each_step_begins(rig):
+    steps = Ladder(rig).layout()["steps"]
+    assert list(steps) == ["S0", "S20"]
+    assert steps["S0"][0] == "MAIN"
+    assert steps["S0"][1] < steps["S20"][1]
