@@ -78,8 +78,7 @@ def section_title(section: str) -> str:
         (sys.modules[row.function.__module__].__doc__ or "").strip().split("\n")[0] for row in TABLE.values() if section_of(row) == section
     }
     head = next((head for head in sorted(heads) if head.startswith(f"{section}:")), f"{section}: instructions")
-    title = head.removeprefix(f"{section}:").strip().split(". ")[0].rstrip(".")
-    return title[:1].upper() + title[1:]
+    return head.removeprefix(f"{section}:").strip().split(". ")[0].rstrip(".")
 
 
 def sections() -> dict[str, list[str]]:
@@ -249,7 +248,7 @@ class Page(Shown):
         if row.transition_steps:
             steps += f"; {row.transition_steps} for a step device inside a step"
         facts = [
-            f"manual {row.section}, {section_title(section_of(row)).lower()}",
+            f"manual {row.section}, {section_title(section_of(row))}",
             f"models: {', '.join(row.models)}",
             f"steps: {steps}",
             form,
@@ -302,8 +301,12 @@ def _remark(spec: OperandSpec) -> str:
     return ", ".join(remarks)
 
 
+def _upper(text: str) -> str:
+    return text[:1].upper() + text[1:]
+
+
 def _sentence(text: str) -> str:
-    return text[:1].upper() + text[1:].rstrip(".") + "."
+    return _upper(text).rstrip(".") + "."
 
 
 def _story(case: dict[str, Any]) -> Iterable[str]:
@@ -370,7 +373,7 @@ class Section(Shown):
     @cached_property
     def parts(self) -> tuple[Part, ...]:
         rows = tuple((name, TABLE[name].title) for name in sections()[self.name])
-        return Heading(f"{self.name} {section_title(self.name)}", 1), Rows(("instruction", "what it does"), rows)
+        return Heading(f"{self.name} {_upper(section_title(self.name))}", 1), Rows(("instruction", "what it does"), rows)
 
 
 class Contents(Shown):
@@ -383,7 +386,7 @@ class Contents(Shown):
     def parts(self) -> tuple[Part, ...]:
         found: list[Part] = [Heading("Instructions", 1)]
         for section, names in sections().items():
-            found += [Heading(f"{section} {section_title(section)}", 2), Words(" ".join(names))]
+            found += [Heading(f"{section} {_upper(section_title(section))}", 2), Words(" ".join(names))]
         return tuple(found)
 
 
