@@ -7,11 +7,14 @@ The lists keep their identity for as long as nothing is forced, so that generate
 
 from collections.abc import Container
 from dataclasses import replace
+from numbers import Number
+from operator import index
+from typing import Any
 
-from .devices import Bits, Constant, Device
+from .devices import Bits, Constant, Device, OperandError
 from .errors import RANGE, EcsimError, Fault
 from .models import Area, Model
-from .values import BOOL, DINT, INT, REAL, TYPES, DataType, join, real_from_words, signed16, split, words_from_real, wrap
+from .values import BOOL, DINT, DWORD, INT, REAL, TYPES, WORD, DataType, join, real_from_words, signed16, split, words_from_real, wrap
 
 _WORDS = Area("", 0, "word")
 MAX_FORCED_BITS, MAX_FORCED_WORDS = 128, 16
@@ -68,8 +71,8 @@ class Memory:
         if device is None:
             try:
                 device = self.model.syntax.parse(text)
-            except ValueError as error:
-                raise EcsimError(str(error)) from None
+            except OperandError as error:
+                raise EcsimError(f"{error}; {error.hint}" if error.hint else str(error)) from None
         if device is None or isinstance(device, Constant):
             raise EcsimError(f"{text!r} is no device of {self.model.name}; write X0, D100, T5 or a name that the program declares")
         if getattr(device, "index", None) is not None:
@@ -78,12 +81,25 @@ class Memory:
         kind = TYPES.get(suffix.strip().upper()) if suffix else self._usual_type(device)
         if kind is None:
             raise EcsimError(f"{suffix!r} is no type; use {', '.join(TYPES)}")
-        length = 4 * device.digits if isinstance(device, Bits) else kind.words if area.kind == "word" else 1
-        if device.number + max(1, length) > area.count:
+        if kind not in self._types(device):
+            raise EcsimError(f"{text} cannot be had as {kind.name}; it is {', '.join(each.name for each in self._types(device))}")
+        if device.number >= area.count:
             raise EcsimError(f"{self.model.name} has no {text} ({area.span})")
-        if isinstance(device, Device) and (area.kind == "bit") != (kind is BOOL) and area.kind in ("bit", "word"):
-            raise EcsimError(f"{text} is {'one bit' if area.kind == 'bit' else 'a register'}, {kind.name} is not to be had from it")
+        length = 4 * device.digits if isinstance(device, Bits) else kind.words if area.kind == "word" else 1
+        if device.number + length > area.count:
+            raise EcsimError(f"{name} reaches beyond the last {device.area} of {self.model.name} ({area.span})")
         return device, kind
+
+    def _types(self, device: Device | Bits) -> tuple[DataType, ...]:
+        """As what a device can be read and written."""
+        if isinstance(device, Bits):
+            return (INT, WORD, DINT, DWORD) if device.digits <= 4 else (DINT, DWORD)
+        kind = self.model.areas[device.area].kind
+        if kind == "bit":
+            return (BOOL,)
+        if kind == "word":
+            return (INT, WORD, DINT, DWORD, REAL)
+        return (DINT, DWORD, BOOL) if self._usual_type(device) is DINT else (INT, WORD, BOOL)
 
     def _usual_type(self, device: Device | Bits) -> DataType:
         if isinstance(device, Bits):
@@ -112,7 +128,7 @@ class Memory:
 
     def set(self, device: Device | Bits, kind: DataType, value: int | float | bool) -> None:
         """Write a device as `kind`; raises EcsimError for a value that does not fit."""
-        value = self._fitting(device, kind, value)
+        value = self.fitting(device, kind, value)
         if isinstance(device, Bits):
             width = 4 * device.digits
             self.lists[device.area][device.number : device.number + width] = [bool(value >> place & 1) for place in range(width)]
@@ -125,24 +141,26 @@ class Memory:
             wide = device.area == "C" and device.number >= self.model.wide_counters
             self.lists[device.area][device.number] = wrap(value, DINT) if wide else signed16(value)
 
-    def _fitting(self, device: Device | Bits, kind: DataType, value):
+    def fitting(self, device: Device | Bits, kind: DataType, value: Any) -> int | float:
+        """`value` as a device of that type can hold it; raises EcsimError when it cannot. Signed and unsigned numbers of its width both fit."""
         if kind is REAL:
-            if isinstance(value, (int, float)):
-                return float(value)
-            raise EcsimError(f"{device} takes a number, not {value!r}")
-        if isinstance(value, bool) or kind is BOOL:
+            try:
+                return float(value if isinstance(value, Number) else None)
+            except (TypeError, OverflowError):
+                raise EcsimError(f"{device} takes a number, not {value!r:.40}") from None
+        if kind is BOOL:
             if value in (0, 1):
                 return int(value)
-            raise EcsimError(f"{device} is one bit: 0 or 1, not {value!r}")
-        if not isinstance(value, int):
-            try:
-                value = value.__index__()
-            except AttributeError:
-                raise EcsimError(f"{device} takes a whole number, not {value!r}; for REAL write {device}:REAL") from None
-        low = -(1 << kind.bits - 1)
-        high = (1 << kind.bits) - 1
+            raise EcsimError(f"{device} is one bit: 0 or 1, not {value!r:.40}")
+        try:
+            value = index(value)
+        except TypeError:
+            hint = f"; for REAL write {device}:REAL" if REAL in self._types(device) else ""
+            raise EcsimError(f"{device} takes a whole number, not {value!r:.40}{hint}") from None
+        width = min(kind.bits, 4 * device.digits) if isinstance(device, Bits) else kind.bits
+        low, high = -(1 << kind.bits - 1) if width == kind.bits else 0, (1 << width) - 1
         if not low <= value <= high:
-            raise EcsimError(f"{value} does not fit into {device} ({kind.name}: {kind.low} to {kind.high})")
+            raise EcsimError(f"{value} does not fit into {device} ({low} to {high})")
         return value
 
     def _pair(self, first: int, second: int) -> tuple[int, int]:

@@ -481,7 +481,7 @@ class Plc:
     def __setitem__(self, name: str, value: Any) -> None:
         device, kind = self.memory.parse(name, self._names)
         if device.area == "X":
-            self._set_inputs(device, value)
+            self._set_inputs(device, self.memory.fitting(device, kind, value))
         elif not self._read_only(device):
             self.memory.set(device, kind, value)
 
@@ -492,15 +492,10 @@ class Plc:
         for name, value in values.items():
             self[name] = value
 
-    def _set_inputs(self, device: Device | Bits, value) -> None:
+    def _set_inputs(self, device: Device | Bits, value: int) -> None:
         """X is the wiring: the level is held on the terminal."""
-        if isinstance(device, Bits):
-            for place in range(4 * device.digits):
-                self.inputs.set(device.number + place, value >> place & 1, self.clock[0])
-        elif value in (0, 1):
-            self.inputs.set(device.number, int(value), self.clock[0])
-        else:
-            raise EcsimError(f"{device} is one bit: 0 or 1, not {value!r}")
+        for place in range(4 * device.digits if isinstance(device, Bits) else 1):
+            self.inputs.set(device.number + place, value >> place & 1, self.clock[0])
 
     def _read_only(self, device: Device | Bits) -> bool:
         """A write from outside to what the system writes is ignored (3.1.9)."""
@@ -512,7 +507,7 @@ class Plc:
         device, kind = self.memory.parse(name, self._names)
         if isinstance(device, Bits) or (kind is not BOOL and kind.words != 1):
             raise EcsimError(f"{name}: one bit or one 16-bit register can be forced")
-        self.memory.force(device, self.memory._fitting(device, kind, value))
+        self.memory.force(device, self.memory.fitting(device, kind, value))
         self._rebind()
 
     def unforce(self, name: str | None = None) -> None:

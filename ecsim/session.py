@@ -303,7 +303,7 @@ class Session:
     def set(self, device: str, value: Any) -> None:
         """Write a device, or put a level on an input, before the next scan. A bad name or value raises here."""
         found, kind = self.plc.memory.parse(device, self.plc._names)
-        self.plc.memory._fitting(found, kind, value)
+        self.plc.memory.fitting(found, kind, value)
         self.post(lambda plc: plc.__setitem__(device, value))
 
     def _do(self, action: Callable[[Plc], Any]) -> None:
