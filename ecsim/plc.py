@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from .assembler import Program, assemble
+from .assembler.inputs import occupied
 from .devices import Bits, Device
 from .engines import CompiledEngine, SteppingEngine, Trace
 from .engines.access import functions
@@ -17,6 +18,8 @@ from .hardware.faults import MEANINGS, STOPPING, Faults
 from .hardware.inputs import Inputs
 from .hardware.interrupts import Interrupts
 from .hardware.meters import Meters
+from .hardware.pulses import PulseOutputs
+from .hardware.servo import ServoReader
 from .hardware.timers import Timers
 from .hardware.unit import Unit
 from .memory import Memory
@@ -88,9 +91,12 @@ class Plc:
         self.interrupts.inputs = self.inputs
         self.counters = Counters(self.memory, self.inputs, self.interrupts, self.faults, self._awake)
         self.meters = Meters(self.memory, self.inputs, self._awake)
-        watchers += (self.counters, self.meters, self.interrupts)
+        self.outputs = PulseOutputs(self.memory, self.inputs, self.interrupts, lambda: self.period_us, self._awake)
+        self.servo = ServoReader(self.memory, self._awake)
+        watchers += (self.counters, self.meters, self.interrupts, self.outputs)
         self.units: dict[str, Unit] = {
             "counters": self.counters, "meters": self.meters, "inputs": self.inputs, "interrupts": self.interrupts,
+            "outputs": self.outputs, "servo": self.servo,
         }  # fmt: skip
         self.timers = Timers(self.memory, self.clock)
         self.clocks = Clocks(self.memory)
@@ -135,7 +141,9 @@ class Plc:
         if not isinstance(program, Program):
             text, name, chosen = read_project(program)
             if chosen.get("model", self.model.name) != self.model.name:
-                raise EcsimError(f"{name} is a project for {chosen['model']}, this is an {self.model.name}; make a Plc({chosen['model']!r})")
+                raise EcsimError(
+                    f"{name} is a project for {chosen['model']}, this is an {self.model.name}; make a Plc({chosen['model']!r})"
+                )
             program = assemble(text, self.model, name)
         if program.model.name != self.model.name:
             raise EcsimError(
@@ -220,6 +228,7 @@ class Plc:
         self.clocks.restart(self.clock[0])
         self.timers.restart()
         self._restart_units()
+        self.inputs.assign(*occupied(self.program.units, self.model))
         self.interrupts.assign({unit.event: unit.name for unit in self.program.units if unit.event is not None})
         self.running = self._first = True
 
@@ -544,7 +553,7 @@ class Plc:
             "units": {name: unit.snapshot() for name, unit in self.units.items()},
             "clocks": (self.clocks.began, self.clocks.due, self.clocks.slow_due),
             "watched": dict(self.timers.watched),
-            "plc": (self.clock[0], self.scans, self.running, self._first, self.system_error, self._asked),
+            "plc": (self.clock[0], self.scans, self.running, self._first, self.system_error, self._asked, self._spent_ns, self._noted_us),
             "trace": copy.copy(self.trace),
         }
 
@@ -555,7 +564,7 @@ class Plc:
             self.units[name].restore(state)
         self.clocks.began, self.clocks.due, self.clocks.slow_due = snapshot["clocks"]
         self.timers.watched = dict(snapshot["watched"])
-        self.clock[0], self.scans, self.running, self._first, self.system_error, self._asked = snapshot["plc"]
+        self.clock[0], self.scans, self.running, self._first, self.system_error, self._asked, self._spent_ns, self._noted_us = snapshot["plc"]
         if snapshot["trace"] is not None and SteppingEngine in self._engines:
             self._engines[SteppingEngine].trace = snapshot["trace"]
 

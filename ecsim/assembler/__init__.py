@@ -5,6 +5,7 @@ from ..errors import Problem, ProgramError
 from ..instructions import TABLE, Definition
 from ..models import Model, get_model
 from ..values import BOOL, TYPES
+from .inputs import check_inputs
 from .operands import Refused, Resolver
 from .program import Instruction, Network, Program, Region, Unit, Variable
 from .reader import RawUnit, RawVariable, Source, Statement, read, shown
@@ -54,6 +55,7 @@ class _Assembler:
         for unit in self.units:
             find_structure(unit, self.model.limits, self.model.initial_steps, self._report_instruction)
         self._calls()
+        check_inputs(self.units, self.model, self.source.report)
         self._count_instructions()
         position, step = 0, 0
         for unit in self.units:

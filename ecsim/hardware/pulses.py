@@ -1,0 +1,302 @@
+"""The pulse outputs Y0 and Y1 (6.10.9 to 6.10.12, 6.17, 8.3): who owns them, what they put out and what they report.
+
+The first instruction that becomes effective owns an output until its flow goes, also when its pulses are over. SM80/81 ON
+stop the pulses; SM82/83 tell that pulses come; SD50 to SD55 count them, SD80 to SD83 follow them while positioning.
+"""
+
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from ..devices import Device
+from ..memory import Memory
+from ..values import join, split
+from .inputs import Inputs
+from .interrupts import Interrupts
+from .trains import Ramps, Segment, Wave
+from .unit import Unit
+
+COMPLETE = 18  # event of Y0; Y1 has the next one
+CLEAR_US = 20_000  # 6.17.6: the clear pulse lasts 20 ms and one scan
+KEPT = 4096  # segments that are remembered of an output
+
+
+@dataclass(frozen=True, slots=True)
+class Home:
+    """A ZRN on its way: the near-point signal, the creep speed, whether the signal has been seen."""
+
+    dog: Device
+    creep: float
+    ramps: Ramps
+    seen: bool = False
+
+
+@dataclass(slots=True)
+class Axis:
+    """One pulse output. `segments` is what is still to come, the present one first."""
+
+    number: int
+    claim: int | None = None
+    segments: tuple[Segment | Wave, ...] = ()
+    done: int = 0  # pulses of the present segment that have been counted
+    completes: bool = False  # whether the end of the pulses is reported as an event
+    ramps: Ramps | None = None  # of a move that slows down when its flow goes
+    home: Home | None = None
+    clearing: int = 0  # the end of ZRN's clear pulse, 0 without one
+    warning: int = 0  # an error that is reported for as long as the instruction is driven
+    free: int = -1  # when the output was given back: positioning waits for another scan (6.17.4)
+
+    @property
+    def busy(self) -> bool:
+        """Whether pulses come."""
+        return bool(self.segments)
+
+    @property
+    def end(self) -> int | None:
+        """When the pulses are over."""
+        return self.segments[-1].end if self.segments else None
+
+
+class PulseOutputs(Unit):
+    """Both outputs; `trains` keeps what they have put out, to be read as times and as a frequency curve."""
+
+    rank = 1
+
+    def __init__(self, memory: Memory, inputs: Inputs, interrupts: Interrupts, period: Callable[[], int], awake: list[Unit]):
+        super().__init__(awake)
+        self.memory, self.inputs, self.interrupts, self.model = memory, inputs, interrupts, memory.model
+        self.period = period  # how long a scan takes, in us
+        self.axes = (Axis(0), Axis(1)) if "pulse busy" in self.model.relays else ()
+        self.history: tuple[deque, deque] = (deque(maxlen=KEPT), deque(maxlen=KEPT))
+
+    def _bits(self) -> list:
+        return self.memory.lists[self.model.special_bits]
+
+    def _add(self, number: int, amount: int) -> None:
+        registers = self.memory.lists[self.model.special_words]
+        registers[number : number + 2] = split(join(registers[number], registers[number + 1]) + amount)
+
+    def register(self, meaning: str, axis: int = 0) -> int:
+        """A 32-bit register of an output: "position", "pulses"."""
+        registers, number = self.memory.lists[self.model.special_words], self.model.registers[meaning] + 2 * axis
+        return join(registers[number], registers[number + 1])
+
+    # -- what commands ask for ----------------------------------------------------------------------------------
+
+    def owner(self, claim: int, number: int) -> Axis | None:
+        """The output if this claim owns it or may take it, None while another one has it or its pulses still come."""
+        axis = self.axes[number]
+        if axis.claim == claim or (axis.claim is None and not axis.segments and not axis.clearing):
+            return axis
+        return None
+
+    def open(self, number: int) -> bool:
+        """Whether SM80 or SM81 lets pulses pass."""
+        return not self._bits()[self.model.relays["pulse stop"] + number]
+
+    def start(self, axis: Axis, claim: int, segments: tuple[Segment | Wave, ...], now: int, **rest) -> None:
+        """Take an output and begin to put out pulses."""
+        axis.claim, axis.done = claim, 0
+        axis.completes, axis.ramps, axis.home, axis.warning = False, None, None, 0
+        for name, value in rest.items():
+            setattr(axis, name, value)
+        axis.segments = segments if self.open(axis.number) else ()
+        self._show(axis, now)
+        self.wake()
+
+    def refrain(self, axis: Axis, claim: int, now: int) -> None:
+        """An operand has become illegal: no pulses, the output is free."""
+        if axis.claim == claim:
+            self._halt(axis, now)
+            axis.claim = None
+
+    def replace(self, axis: Axis, following: tuple[Segment, ...], now: int) -> None:
+        """Go on with other segments behind the pulse that is on its way; the first of them is told its begin."""
+        running = axis.segments[0]
+        cut = running.cut(now)
+        begin = cut.end if cut.pulses else now
+        if cut.pulses:
+            axis.segments = (cut, replace(following[0], start=begin), *following[1:])
+        else:
+            axis.segments, axis.done = (replace(following[0], start=begin), *following[1:]), 0
+
+    def release(self, claim: int, now: int) -> None:
+        for axis in self.axes:
+            if axis.claim == claim:
+                axis.claim, axis.completes, axis.warning, axis.free = None, False, 0, now
+                axis.home = None
+                if axis.ramps is not None and axis.segments:
+                    self._slow(axis, axis.ramps, axis.ramps.base, now)
+                else:
+                    self._halt(axis, now)
+
+    def _slow(self, axis: Axis, ramps: Ramps, hertz: float, now: int) -> None:
+        """Slow down; a move that is slowing down already does so to its end."""
+        self.advance(now)
+        if not axis.segments or (axis.segments[0].slope < 0 and len(axis.segments) == 1):
+            return
+        running = axis.segments[0]
+        following = [segment.pulses for segment in axis.segments]
+        room = None if following[-1] is None else sum(following) - running.started(now)
+        axis.segments = ramps.slowed(running, now, room, min(hertz, running.frequency(now)))
+        self._show(axis, now)
+
+    def _halt(self, axis: Axis, now: int) -> None:
+        """Stop at once; the output goes OFF."""
+        if axis.segments:
+            self._remember(axis, axis.segments[0], now)
+            axis.segments = ()
+        axis.home, axis.done = None, 0
+        self._show(axis, now)
+        self._rest()
+
+    def _rest(self) -> None:
+        self.wake(any(axis.claim is not None or axis.segments or axis.clearing for axis in self.axes))
+
+    def restart(self, now: int) -> None:
+        for axis in self.axes:
+            axis.claim, axis.clearing, axis.free = None, 0, -1
+            self._halt(axis, now)
+
+    # -- time ---------------------------------------------------------------------------------------------------
+
+    def look(self, now: int) -> None:
+        for axis in self.axes:
+            if axis.segments and not self.open(axis.number):
+                self._halt(axis, now)
+            if axis.home is not None and axis.segments and axis.home.dog.area != "X":
+                self._dog(axis, self.memory.bits(axis.home.dog.area)[axis.home.dog.number], now)
+
+    def next(self, until: int) -> int | None:
+        first = None
+        for axis in self.axes:
+            moments = [axis.end, axis.clearing or None]
+            if axis.home is not None and axis.home.dog.area == "X":
+                signal = self.inputs.signals.get(axis.home.dog.number)
+                edge = signal.next(self.inputs.time) if signal is not None else None
+                moments.append(edge[0] if edge is not None else None)
+            for moment in moments:
+                if moment is not None and moment <= until and (first is None or moment < first):
+                    first = moment
+        return first
+
+    def advance(self, now: int) -> None:
+        outputs = self.memory.lists["Y"]
+        for axis in self.axes:
+            if not axis.segments:
+                if axis.claim is not None:
+                    outputs[axis.number] = False  # nothing else may use the output of an effective instruction (8.3.2)
+                continue
+            while True:
+                segment = axis.segments[0]
+                counted = segment.counted(now)
+                if counted > axis.done:
+                    self._note(axis, segment, counted - axis.done)
+                    axis.done = counted
+                if len(axis.segments) == 1 or segment.end > now:
+                    break
+                self._remember(axis, segment, now)
+                axis.segments, axis.done = axis.segments[1:], 0
+                self._segment(axis)
+            outputs[axis.number] = segment.level(now)
+
+    def _note(self, axis: Axis, segment: Segment, pulses: int) -> None:
+        registers = self.model.registers
+        self._add(registers["pulses"] + 2 * axis.number, pulses)
+        self._add(registers["pulses of both"], pulses)
+        if segment.direction:
+            self._add(registers["position"] + 2 * axis.number, pulses * segment.direction)
+
+    def _segment(self, axis: Axis) -> None:
+        place = self.model.registers.get("segment")
+        if place is not None:
+            self.memory.lists[self.model.special_words][place + axis.number] = axis.segments[0].number if axis.segments else 0
+
+    def _show(self, axis: Axis, now: int) -> None:
+        self._bits()[self.model.relays["pulse busy"] + axis.number] = bool(axis.segments)
+        self.memory.lists["Y"][axis.number] = bool(axis.segments) and axis.segments[0].level(now)
+        self._segment(axis)
+
+    def act(self, now: int) -> None:
+        for axis in self.axes:
+            if axis.home is not None and axis.home.dog.area == "X":
+                self._dog(axis, self.inputs.terminals[axis.home.dog.number], now)
+            if axis.clearing and axis.clearing <= now:
+                axis.clearing = 0
+                self.memory.lists["Y"][2 + axis.number] = False
+                self._rest()
+            if axis.segments and axis.end is not None and axis.end <= now:
+                self._halt(axis, now)
+                if axis.completes:
+                    self.interrupts.fire(COMPLETE + axis.number)
+
+    def sense(self, axis: Axis, now: int) -> None:
+        """A ZRN has begun: it may stand on its near-point switch already."""
+        dog = axis.home.dog if axis.home is not None else None
+        if dog is not None and axis.segments:
+            on = self.inputs.terminals[dog.number] if dog.area == "X" else self.memory.bits(dog.area)[dog.number]
+            self._dog(axis, on, now)
+
+    # -- return to the origin -----------------------------------------------------------------------------------
+
+    def edge(self, number: int, level: bool, now: int) -> None:
+        for axis in self.axes:
+            if axis.home is not None and axis.home.dog.area == "X" and axis.home.dog.number == number:
+                self._dog(axis, level, now)
+
+    def _dog(self, axis: Axis, on: bool, now: int) -> None:
+        """6.17.7: the near-point signal ON slows down to the creep speed, OFF again is the origin."""
+        home = axis.home
+        if on and not home.seen:
+            axis.home = replace(home, seen=True)
+            self._slow(axis, home.ramps, home.creep, now)
+            axis.segments = (*axis.segments, Segment(axis.segments[-1].end if axis.segments else now, home.creep, None, direction=-1))
+        elif not on and home.seen:
+            self._halt(axis, now)
+            axis.completes = False
+            registers, place = self.memory.lists[self.model.special_words], self.model.registers["position"] + 2 * axis.number
+            registers[place : place + 2] = 0, 0
+            clear = self.model.relays.get("clear signal")
+            if clear is not None and self._bits()[clear]:
+                axis.clearing = now + CLEAR_US + self.period()
+                self.memory.lists["Y"][2 + axis.number] = True
+                self.wake()
+            self.interrupts.fire(COMPLETE + axis.number)
+
+    # -- what was put out ---------------------------------------------------------------------------------------
+
+    def _remember(self, axis: Axis, segment: Segment | Wave, now: int) -> None:
+        if isinstance(segment, Segment):
+            segment = segment.stopped(now)
+            if segment.pulses:
+                self.history[axis.number].append(segment)
+        else:
+            self.history[axis.number].append((segment, now))
+
+    def trains(self, number: int, now: int) -> list[Segment]:
+        """The segments that an output has put out up to now, in order of time (those of PWM are left out)."""
+        kept = [segment for segment in self.history[number] if isinstance(segment, Segment) and segment.start <= now]
+        return kept + [s.stopped(now) for s in self.axes[number].segments[:1] if isinstance(s, Segment) and s.counted(now)]
+
+    def times(self, number: int, now: int) -> list[tuple[int, int]]:
+        """(ON, OFF) of every pulse in microseconds."""
+        return [(s.edge(True, place), s.edge(False, place)) for s in self.trains(number, now) for place in range(s.pulses)]
+
+    def frequency(self, number: int, now: int) -> list[tuple[float, float]]:
+        """The corners of the frequency curve as (ms, Hz); a pause is 0 Hz."""
+        curve: list[tuple[float, float]] = []
+        for segment in self.trains(number, now):
+            begin, end = segment.start / 1000, segment.end / 1000
+            if not curve or curve[-1][0] < begin:
+                curve += [(curve[-1][0], 0.0)] * bool(curve) + [(begin, 0.0)]
+            curve += [(begin, segment.hertz), (end, segment.frequency(segment.end))]
+        return curve
+
+    def snapshot(self) -> tuple:
+        return tuple(replace(axis) for axis in self.axes), tuple(tuple(kept) for kept in self.history)
+
+    def restore(self, snapshot: tuple) -> None:
+        axes, history = snapshot
+        self.axes = tuple(replace(axis) for axis in axes)
+        self.history = tuple(deque(kept, maxlen=KEPT) for kept in history)
+        self._rest()
