@@ -213,7 +213,9 @@ class _Rung:
 
     def _contact(self, instruction: Instruction) -> None:
         lines, text = self.c.contact(instruction)
-        self.lines += lines
+        if lines:
+            self._settle()
+            self.lines += lines
         closed = Flow(text, _NOT if text.startswith("not ") else _ATOM)
         join = instruction.definition.join
         if join == "LD":
@@ -222,6 +224,13 @@ class _Rung:
             self.flow = closed
         else:
             self.flow = self._cut(_joined(join.lower(), self._bus(), closed))
+
+    def _settle(self) -> None:
+        """Fix the flows that read a special relay or register: the statements that follow may change it (SM20 and its like)."""
+        special = re.compile(rf"\b({self.c.model.special_bits}|{self.c.model.special_words})\[")
+        self.stack = [self._name(flow.text) if special.search(flow.text) else flow for flow in self.stack]
+        if self.flow is not None and special.search(self.flow.text):
+            self.flow = self._name(self.flow.text)
 
     def _cut(self, flow: Flow) -> Flow:
         return self._name(flow.text) if len(flow.text) > MAX_TEXT or flow.depth > MAX_DEPTH else flow
@@ -307,12 +316,9 @@ class _Rung:
     def repeat(self, count: Operand) -> None:
         load = self.c.access.load(INT, count)
         flow = self._bus().text
-        self.lines += (
-            self.c.guard_faults([f"turns = {load}"], (count,))
-            if not self.c.access.can_fault(count)
-            else ["turns = 0", *self.c.guard_faults([f"turns = {load}"], (count,))]
-        )
-        self.opened = "turns" if flow == "True" else f"turns if {flow} else 0"
+        fetch = self.c.guard_faults([f"turns = {load}"], (count,))
+        self.lines += ["turns = 0", *([f"if {flow}:", *indented(fetch)] if flow != "True" else fetch)]
+        self.opened = "turns"
 
     def label(self, number: int) -> None:
         """A label that nothing jumps to needs no code."""

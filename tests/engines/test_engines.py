@@ -84,3 +84,33 @@ def test_a_way_back_takes_the_time_of_what_it_repeats(run):
     # LBL 3, LD 1, INC 3, LD< 5, CJ 3: 15 steps a turn.
     back = "LBL 1\nLD SM0\nINC D0\nLD< D0 {}\nCJ 1"
     assert time_us(run, back.format(9000)) - time_us(run, back.format(8000)) == 1000 * 15 * 90 // 1000
+
+
+def test_a_contact_that_clears_an_error_comes_after_the_contacts_before_it(run):
+    # SM20 is ON until the compare contact, an application instruction, is executed: the first block has seen it ON.
+    plc = run("LD SM1\nMOV D7999Z0 D1\nLD SM20\nLD= D0 5\nORB\nOUT Y0\nLD SM20\nOUT Y1", Z0=1)
+    plc.scan()
+    assert (plc["Y0"], plc["Y1"]) == (1, 0)
+    assert plc["SD20"] == 65
+
+
+def test_a_loop_without_flow_does_not_look_at_its_count(run):
+    plc = run("LD X0\nFOR D7999Z0\nLD SM0\nINC D0\nNEXT", Z0=1)
+    plc.scan()
+    assert plc["SD20"] == 0
+    plc["X0"] = 1
+    plc.scan()
+    assert plc["SD20"] == 65
+    assert plc["D0"] == 0
+
+
+def test_the_scan_times_go_on_after_a_step_back(run):
+    plc = run("LD X0\nFOR 30000\nLD SM0\nADD D0 1 D0\nNEXT", watchdog_ms=1000, scan_ms=None)
+    plc.scan(2)
+    before = plc.snapshot()
+    plc["X0"] = 1
+    plc.scan()
+    assert plc["SD30"] == 24  # 30,000 turns of 9 steps, 90 ns each
+    plc.restore(before)
+    plc.scan()
+    assert plc["SD30"] == 1
