@@ -21,22 +21,19 @@ MAX_FORCED_BITS, MAX_FORCED_WORDS = 128, 16
 
 
 class Forced(list):
-    """An area with forced devices: a write to one of them is noted but changes nothing."""
+    """An area with forced devices: a write to one of them changes nothing."""
 
     def __init__(self, values):
         super().__init__(values)
         self.forced: dict[int, int] = {}
-        self.written: dict[int, int] = {}
 
     def __setitem__(self, key, value):
         if isinstance(key, slice):
             value = list(value)
             for offset, number in enumerate(range(*key.indices(len(self)))):
                 if number in self.forced:
-                    self.written[number] = value[offset]
                     value[offset] = self.forced[number]
         elif key in self.forced:
-            self.written[key] = value
             return
         super().__setitem__(key, value)
 
@@ -181,46 +178,46 @@ class Memory:
 
     # -- forcing ------------------------------------------------------------------------------------------------
 
-    def force(self, device: Device, value: int) -> None:
+    def force(self, device: Device, kind: DataType, value: int) -> None:
         """Hold a bit or register at a value until it is released; at most 128 bits and 16 words (2.2)."""
-        is_bit = self.model.areas[device.area].kind == "bit"
-        value = bool(value) if is_bit else value
-        name = device.area
+        name = self._list(device, kind)
         values = self.lists[name]
-        same = [n for n, v in self.lists.items() if isinstance(v, Forced) and (self.model.areas[n].kind == "bit") == is_bit]
-        count = sum(len(self.lists[n].forced) for n in same)
-        limit = MAX_FORCED_BITS if is_bit else MAX_FORCED_WORDS
+        same = [part.forced for part in self.lists.values() if isinstance(part, Forced) and isinstance(part[0], bool) is (kind is BOOL)]
+        limit = MAX_FORCED_BITS if kind is BOOL else MAX_FORCED_WORDS
         already = isinstance(values, Forced) and device.number in values.forced
-        if count >= limit and not already:
-            raise EcsimError(f"{limit} {'bits' if is_bit else 'words'} are forced already; release one first")
+        if sum(map(len, same)) >= limit and not already:
+            raise EcsimError(f"{limit} {'bits' if kind is BOOL else 'words'} are forced already; release one first")
         if not isinstance(values, Forced):
             values = self.lists[name] = Forced(values)
             self.generation += 1
-        old = values.forced.pop(device.number, None)
-        if old is None:
-            values.written[device.number] = values[device.number]
-        values[device.number] = value
+        values.forced.pop(device.number, None)
+        values[device.number] = value = bool(value) if kind is BOOL else signed16(value)
         values.forced[device.number] = value
 
-    def unforce(self, device: Device) -> None:
+    def unforce(self, device: Device, kind: DataType) -> None:
         """Release a forced device; it keeps the value until the program or the input writes it."""
-        values = self.lists[device.area]
+        name = self._list(device, kind)
+        values = self.lists[name]
         if not isinstance(values, Forced) or device.number not in values.forced:
             raise EcsimError(f"{device} is not forced")
         del values.forced[device.number]
-        values.written.pop(device.number, None)
         if not values.forced:
-            self.lists[device.area] = list(values)
+            self.lists[name] = list(values)
             self.generation += 1
 
     def forced(self) -> dict[str, int]:
-        """Every forced device by name, with its value."""
-        return {
-            str(Device(name, number)): int(value)
-            for name, values in self.lists.items()
-            if isinstance(values, Forced)
-            for number, value in sorted(values.forced.items())
-        }
+        """Every forced device by name, with its value; the contacts of timers and counters as T0:BOOL."""
+        found = {}
+        for name, values in self.lists.items():
+            if isinstance(values, Forced):
+                area, suffix = (name[0], ":BOOL") if name in ("TB", "CB") else (name, "")
+                found |= {f"{Device(area, number)}{suffix}": int(value) for number, value in sorted(values.forced.items())}
+        return found
+
+    @staticmethod
+    def _list(device: Device, kind: DataType) -> str:
+        """The name of the list that a device of that type lies in."""
+        return f"{device.area}B" if kind is BOOL and device.area in ("T", "C") else device.area
 
     # -- whole areas --------------------------------------------------------------------------------------------
 

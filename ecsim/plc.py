@@ -248,10 +248,8 @@ class Plc:
                 self.memory.set(device, kind, state)
 
     def power_cycle(self) -> None:
-        """Power off and on again with the mode switch ON: what is not retained is cleared, then RUN."""
+        """Power off and on again with the mode switch ON: what is not retained is cleared, then RUN. What is forced stays so (2.4.6)."""
         self.stop()
-        for device in list(self.forced):
-            self.unforce(device)
         self._initialise(hold=False)
         self.inputs.waiting.clear()
         self.system_error = 0
@@ -516,14 +514,15 @@ class Plc:
         device, kind = self.memory.parse(name, self._names)
         if isinstance(device, Bits) or (kind is not BOOL and kind.words != 1):
             raise EcsimError(f"{name}: one bit or one 16-bit register can be forced")
-        self.memory.force(device, self.memory.fitting(device, kind, value))
+        if self._read_only(device):
+            raise EcsimError(f"{device} cannot be forced: the system writes it")
+        self.memory.force(device, kind, self.memory.fitting(device, kind, value))
         self._rebind()
 
     def unforce(self, name: str | None = None) -> None:
         """Release a forced device, or all of them."""
         for each in [name] if name is not None else list(self.forced):
-            device, _ = self.memory.parse(each, self._names)
-            self.memory.unforce(device)
+            self.memory.unforce(*self.memory.parse(each, self._names))
         self.inputs.changed = True
         self._rebind()
 

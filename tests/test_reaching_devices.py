@@ -83,3 +83,46 @@ def test_kn_on_inputs_sets_the_terminals(plc):
     plc["K1X4"] = 0b1010
     plc.scan()
     assert [plc[f"X{n}"] for n in (4, 5, 6, 7)] == [0, 1, 0, 1]
+
+
+# -- forcing (2.4.6) ----------------------------------------------------------------------------------------------------
+
+
+def test_the_contact_of_a_timer_is_forced_without_its_value(plc):
+    plc.force("T0:BOOL", 1)
+    plc.scan()
+    assert (plc["T0"], plc["T0:BOOL"], plc["Y0"], plc.forced) == (0, 1, 1, {"T0:BOOL": 1})
+    plc.unforce("T0:BOOL")
+    plc.scan()
+    assert (plc["Y0"], plc.forced) == (0, {})
+
+
+def test_a_forced_register_holds_what_a_register_holds(plc):
+    plc.force("D0", 65535)
+    assert (plc["D0"], plc["D0:WORD"], plc.forced) == (-1, 65535, {"D0": -1})
+
+
+def test_bits_and_contacts_share_the_limit_of_128(plc):
+    for number in range(127):
+        plc.force(f"M{number}", 1)
+    plc.force("T0:BOOL", 1)
+    with pytest.raises(EcsimError, match="128 bits are forced already"):
+        plc.force("C0:BOOL", 1)
+    plc.force("T0", 5)  # a word
+
+
+@pytest.mark.parametrize("name", ["SM0", "SM12", "SD30"])
+def test_what_the_system_writes_cannot_be_forced(plc, name):
+    with pytest.raises(EcsimError, match=f"{name} cannot be forced"):
+        plc.force(name, 0)
+
+
+def test_a_forced_device_stays_forced_through_a_power_cycle(plc):
+    plc.force("Y0", 1)
+    plc.force("D5", 7)
+    plc.power_cycle()
+    plc.scan(3)
+    assert (plc["Y0"], plc["D5"], plc.forced) == (1, 7, {"Y0": 1, "D5": 7})
+    plc.unforce()
+    plc.scan()
+    assert (plc["Y0"], plc.forced) == (0, {})
