@@ -132,7 +132,7 @@ class Writer:
 
     def _load(self, instruction: Instruction, spec: OperandSpec, operand: Operand) -> str:
         if spec.unit:
-            return self._unit(spec, operand)
+            return self._hardware(spec, operand)
         kind = spec.type
         if instruction.definition.as_stored:
             kind = kind.stored
@@ -142,7 +142,7 @@ class Writer:
             return self.access.load(kind, operand)
         return self.access.load_span(kind, operand, self._count(instruction, spec))
 
-    def _unit(self, spec: OperandSpec, operand: Operand) -> str:
+    def _hardware(self, spec: OperandSpec, operand: Operand) -> str:
         """What a command gets of a device that it works on: the device itself, or the number of a counter, pulse output or table."""
         if spec.kind == "BLOCK" and not (isinstance(operand, Device) and operand.area == "D"):
             return self.access.load(spec.type, operand)
