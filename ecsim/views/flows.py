@@ -19,12 +19,15 @@ from .rungs import Contact, Fork, Gate, Item, Output, Rung, Series, Word, instru
 QUALIFIERS = {"OUT": "N", "SET": "S", "RST": "R"}
 
 
+ALWAYS = Series()
+
+
 @dataclass(frozen=True)
 class Action:
     """Something that a step does while it is active, under a condition of its own when that has items."""
 
     word: Word
-    condition: Series = Series()
+    condition: Series = ALWAYS
 
     @property
     def qualifier(self) -> str:

@@ -6,6 +6,7 @@ the nets follows from what a scan recorded is kept as a short list of operations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Protocol
 
 from .rungs import Block, Contact, Fork, Gate, Item, Output, Parallel, Rung, Series, Word
@@ -138,7 +139,7 @@ class Layout:
     def _stack(self, sizes: Sequence[Size]) -> list[float]:
         """The heights of wires one below the other, the first at 0."""
         rows = [0.0]
-        for above, below in zip(sizes, sizes[1:], strict=False):
+        for above, below in pairwise(sizes):
             rows.append(rows[-1] + max(self.metrics.row, above.down + below.up + self.metrics.gap))
         return rows
 

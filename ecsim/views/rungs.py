@@ -17,25 +17,33 @@ from ..instructions import TABLE
 
 @dataclass(frozen=True, slots=True)
 class Word:
-    """One instruction as it is written; `position` and `step` say where it stood in the program, -1 for one that is new."""
+    """One instruction as it is written; `position` and `step` say where it stood in the program, -1 for one that is new.
+
+    `spelled` is the mnemonic as its family writes it, where that differs from TABLE's.
+    """
 
     mnemonic: str
     written: tuple[str, ...] = ()
     comment: str = ""
     title: str = ""
+    spelled: str = ""
     operands: tuple[Operand, ...] = field(default=(), compare=False)
     position: int = field(default=-1, compare=False)
     step: int = field(default=-1, compare=False)
 
     def __str__(self) -> str:
-        return " ".join((self.mnemonic, *self.written))
+        return " ".join((self.spelled or self.mnemonic, *self.written))
 
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """A contact. `word` has the mnemonic that would load it (LD, LDI, LD=); its place in the tree tells LD, AND and OR apart."""
+    """A contact. `word` has the mnemonic that would load it (LD, LDI, LD=); its place in the tree tells LD, AND and OR apart.
+
+    `join` is the place for which it was spelled.
+    """
 
     word: Word
+    join: str = field(default="LD", compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,9 +181,10 @@ class _Parser:
     def take(self, instruction: Instruction, title: str) -> None:
         definition = instruction.definition
         mnemonic = _LOAD[instruction.mnemonic] if definition.form == "contact" else instruction.mnemonic
-        word = Word(mnemonic, instruction.written, instruction.comment, title, instruction.operands, instruction.position, instruction.step)
+        places = instruction.operands, instruction.position, instruction.step
+        word = Word(mnemonic, instruction.written, instruction.comment, title, instruction.spelled, *places)
         if definition.form == "contact":
-            {"LD": self.load, "AND": self.and_, "OR": self.or_}[definition.join](Contact(word))
+            {"LD": self.load, "AND": self.and_, "OR": self.or_}[definition.join](Contact(word, definition.join))
         else:
             _STRUCTURAL.get(mnemonic, _Parser.output)(self, word)
 
@@ -269,7 +278,7 @@ def words(flow: Series, loads: bool = True) -> Iterator[Word]:
         if isinstance(node, Word):
             yield node
         elif isinstance(node, Contact):
-            yield _joined(node.word, join)
+            yield _joined(node, join)
         elif isinstance(node, Gate | Output):
             yield node.word
         else:
@@ -308,11 +317,13 @@ def depth(flow: Series) -> int:
     return deepest
 
 
-def _joined(word: Word, join: str) -> Word:
-    mnemonic = _JOINED[word.mnemonic][join]
-    if mnemonic == word.mnemonic:
+def _joined(contact: Contact, join: str) -> Word:
+    """The contact's word in its place."""
+    word = contact.word
+    mnemonic, spelled = _JOINED[word.mnemonic][join], word.spelled if contact.join == join else ""
+    if (mnemonic, spelled) == (word.mnemonic, word.spelled):
         return word
-    return Word(mnemonic, word.written, word.comment, word.title, word.operands, word.position, word.step)
+    return Word(mnemonic, word.written, word.comment, word.title, spelled, word.operands, word.position, word.step)
 
 
 def instruction_list(tree: Rung | Series | Sequence[Rung]) -> list[Word]:

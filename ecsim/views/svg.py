@@ -129,9 +129,7 @@ def applied(picture: str, entries: Mapping[str, str], prefix: str = "") -> str:
             if attribute == "text":
                 content, end = escape(value), ""
             else:
-                quoted = f" {attribute}={quoteattr(value)}"
-                head, count = re.subn(rf'(?<=\s){re.escape(attribute)}="[^"]*"', lambda _: quoted[1:], head, count=1)
-                head += "" if count else quoted
+                head = re.sub(rf'\s{re.escape(attribute)}="[^"]*"', "", head, count=1) + f" {attribute}={quoteattr(value)}"
         closing = f"</{match['tag']}>" if match["end"] and not end else ""
         return f"<{match['tag']}{head}{end}>{content}{closing}"
 
