@@ -75,6 +75,7 @@ class Model:
     fast_counters: dict[int, FastCounter] = field(default_factory=dict)
     events: dict[int, int] = field(default_factory=dict)  # interrupt event -> the special relay that enables it (9.1)
     least_ramp_ms: int = 0  # of PLSR
+    reff_ms: tuple[int, ...] = (0,)  # what REFF may set the input filter to
 
     def timer_base_us(self, number: int) -> int:
         """The time unit of a timer in microseconds."""
