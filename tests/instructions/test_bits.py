@@ -12,7 +12,7 @@ WORDS = st.integers(0, 0xFFFF)
 
 def written(plc, word, kind="WORD"):
     """D10 after the PLC's one instruction has worked on D0."""
-    plc.set({f"D0:{kind}": word, "D10": -321, "SM20": 0, "SD20": 0})
+    plc.set({f"D0:{kind}": word, "D10": -321})
     plc.scan()
     return plc["D10:WORD"]
 
@@ -57,7 +57,7 @@ def test_a_run_is_set_or_cleared_and_nothing_beside_it(running, name, pattern, f
 @pytest.mark.parametrize("name", ["ZSET", "ZRST"])
 def test_a_run_of_fewer_than_no_bits_is_an_operand_error(running, name):
     plc = running(f"LD SM0\n{name} M0 D0")
-    plc.set({"M0": 1, "D0": -1, "SD20": 0})
+    plc.set({"M0": 1, "D0": -1})
     plc.scan()
     assert (plc["M0"], plc["SD20"]) == (1, OPERAND_ERROR)
 

@@ -20,7 +20,7 @@ FLAGS = ("SM180", "SM181", "SM182")
 
 def converted(plc, value, source, target):
     """D10 after the PLC's one instruction has converted D0."""
-    plc.set({"D10": UNTOUCHED, "D11": UNTOUCHED, f"D0:{source}": value, "SM20": 0, "SD20": 0})
+    plc.set({"D10": UNTOUCHED, "D11": UNTOUCHED, f"D0:{source}": value})
     plc.scan()
     return plc[f"D10:{target}"]
 
@@ -193,7 +193,7 @@ def test_a_constant_gives_what_it_holds_whatever_the_count(word, count, bytewise
 @pytest.mark.parametrize("name", ["ITA", "ATI"])
 def test_a_count_outside_1_to_256_is_an_operand_error(running, name, count):
     plc = running(f"LD SM0\n{name} D0 D10 D50", "EC10")
-    plc.set({"D0:WORD": 0x3030, "D10": UNTOUCHED, "D11": UNTOUCHED, "D50": count, "SM20": 0, "SD20": 0})
+    plc.set({"D0:WORD": 0x3030, "D10": UNTOUCHED, "D11": UNTOUCHED, "D50": count})
     plc.scan()
     assert refused(plc)
 

@@ -36,7 +36,7 @@ def test_a_constant_number_reads_the_same_bit(word, bit):
 @pytest.mark.parametrize("name", ["BLD", "BLDI"])
 def test_a_contact_on_no_bit_is_open_and_an_operand_error(running, name, number):
     plc = running(f"{name} D0 D1\nOUT Y0")
-    plc.set({"D0": -1 if name == "BLD" else 0, "D1": number, "SM20": 0, "SD20": 0})
+    plc.set({"D0": -1 if name == "BLD" else 0, "D1": number})
     plc.scan()
     assert (plc["Y0"], plc["SM20"], plc["SD20"]) == (0, 1, OPERAND_ERROR)
 
@@ -61,7 +61,7 @@ def test_a_coil_writes_its_bit_and_no_other(running, word, bit, flow):
 
 def test_a_coil_in_a_skipped_structure_is_off_and_needs_no_legal_number(running):
     plc = running("LD X0\nMC 0\nLD SM0\nBOUT D0 D1\nBOUT D0 2\nBSET D0 4\nMCR 0")
-    plc.set({"X0": 1, "D0": 0, "D1": 1, "SM20": 0, "SD20": 0})
+    plc.set({"X0": 1, "D0": 0, "D1": 1})
     plc.scan()
     assert plc["D0"] == 0b10110
     plc["X0"] = 0
@@ -84,7 +84,7 @@ def test_a_coil_is_cleared_when_its_step_has_been_left(running):
 
 def test_a_coil_behind_an_error_keeps_the_word(running):
     plc = running("LD M0\nBOUT D0 D1\nOUT Y0")
-    plc.set({"M0": 1, "D0": 77, "D1": 16, "SM20": 0, "SD20": 0})
+    plc.set({"M0": 1, "D0": 77, "D1": 16})
     plc.scan()
     assert (plc["D0"], plc["Y0"], plc["SM20"], plc["SD20"]) == (77, 1, 1, OPERAND_ERROR)
 
