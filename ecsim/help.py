@@ -255,6 +255,10 @@ class Page(Shown):
         ]
         if row.after:
             facts.append("executed once more when the flow has gone")
+        if row.claims:
+            facts.append("what it works on is its own until the flow has gone")
+        if row.occupies:
+            facts.append("needs inputs for itself (manual 8.5)")
         if row.cleared:
             facts.append("cleared when its master control is OFF and when its step has been left")
         family = [other.mnemonic for other in TABLE.values() if other.function is row.function and other is not row]

@@ -65,9 +65,7 @@ class Model:
     high_word_first: bool = True
     type_code: int = 0
     step_surcharge: tuple[str, int] | None = None  # contacts on this area from this number on are one step longer
-    spelling: dict[str, str] = field(
-        default_factory=dict
-    )  # how the family writes all its mnemonics -> how TABLE has them; empty: as TABLE does
+    spelling: dict[str, str] = field(default_factory=dict)  # the family's name of each of its instructions -> TABLE's; empty: TABLE's own
     pulse_suffix: str = ""  # behind a mnemonic: executed only in the scan in which its flow rises
     fault_record: int = 5  # so many registers from "faults" on keep the codes of the last errors
     initial_registers: dict[int, int] = field(default_factory=dict)
