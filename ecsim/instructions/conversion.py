@@ -24,10 +24,12 @@ def real(s):
 
 def truncated(s, low, high):
     """A real number without its fraction, held between two limits; zero, out of the limits, fraction lost."""
+    if low <= s <= high:
+        whole = int(s)
+        return whole, whole == 0, False, whole != s
     if s != s:
         raise Fault(OPERAND)
-    whole = int(max(low, min(s, high)))
-    return whole, whole == 0, not low <= s <= high, low <= s <= high and whole != s
+    return high if s > high else low, False, True, False
 
 
 @value("INT", "S:REAL -> D:INT zero carry borrow", steps=6, section="6.5.5", faults=(OPERAND,))
