@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 from ..devices import Device, Operand
 from ..instructions import Definition
@@ -97,6 +99,10 @@ class Program:
     variables: dict[str, Variable]
     steps: int = 0
     slots: int = 0
+    face: ClassVar[Callable[[Program], str] | None] = None  # its HTML for a notebook; the views stand above and are named here
+
+    def _repr_html_(self) -> str | None:
+        return self.face() if self.face else None
 
     @property
     def main(self) -> Unit:

@@ -93,7 +93,12 @@ class Listing:
             yield _keyword(f"END_{word}")
 
     def _instruction(self, instruction: Instruction, labels: Labels, region: tuple[int, ...]) -> Row:
-        words = [("step" if _opens(instruction) else "op", padded(instruction.mnemonic, MNEMONIC - 1 if instruction.written else 0))]
+        words = [
+            (
+                "step" if _opens(instruction) else "op",
+                padded(instruction.spelled or instruction.mnemonic, MNEMONIC - 1 if instruction.written else 0),
+            )
+        ]
         for text, operand in zip(instruction.written, instruction.operands, strict=True):
             kind, text = _device(text, operand)
             words += [("", " "), (kind, text)]
