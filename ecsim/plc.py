@@ -3,6 +3,7 @@
 import copy
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -14,12 +15,17 @@ from .engines.access import functions
 from .errors import WATCHDOG, EcsimError
 from .hardware.clocks import Clocks
 from .hardware.counters import Counters
+from .hardware.eeprom import Eeprom
 from .hardware.faults import MEANINGS, STOPPING, Faults
 from .hardware.inputs import Inputs
 from .hardware.interrupts import Interrupts
 from .hardware.meters import Meters
-from .hardware.pulses import PulseOutputs
+from .hardware.modules import Rack
+from .hardware.pots import Potentiometers
+from .hardware.pulses import PulseOutputs, Wired
+from .hardware.rtc import RealTimeClock
 from .hardware.servo import ServoReader
+from .hardware.signals import PARTS, Signal, Train, bouncing, changes, quadrature
 from .hardware.timers import Timers
 from .hardware.unit import Unit
 from .memory import Memory
@@ -94,9 +100,14 @@ class Plc:
         self.outputs = PulseOutputs(self.memory, self.inputs, self.interrupts, lambda: self.period_us, self._awake)
         self.servo = ServoReader(self.memory, self._awake)
         watchers += (self.counters, self.meters, self.interrupts, self.outputs)
+        self.rtc = RealTimeClock(self.memory, self._awake)
+        self.eeprom = Eeprom(self.memory, self._awake)
+        self.pots = Potentiometers(self.model.limits.get("potentiometers", 0), self._awake)
+        self.modules = Rack(self.memory, self._awake)
         self.units: dict[str, Unit] = {
             "counters": self.counters, "meters": self.meters, "inputs": self.inputs, "interrupts": self.interrupts,
             "outputs": self.outputs, "servo": self.servo,
+            "rtc": self.rtc, "eeprom": self.eeprom, "pots": self.pots, "modules": self.modules,
         }  # fmt: skip
         self.timers = Timers(self.memory, self.clock)
         self.clocks = Clocks(self.memory)
@@ -129,6 +140,7 @@ class Plc:
             "machine": self,
         }
         self._init_special(power_up=True)
+        self._restart_units()
         self.load("")
 
     # -- the program --------------------------------------------------------------------------------------------
@@ -275,9 +287,11 @@ class Plc:
                 device, kind = self.memory.parse(name)
                 if device.number not in retained.get(device.area, ()):
                     self.memory.set(device, kind, value)
+        self.eeprom.recall(keep=retained.get("D", frozenset()))
 
     def _init_special(self, power_up: bool) -> None:
-        """SM and SD at their initial values but for the pulse counts SD50 to SD55 (appendix 2)."""
+        """SM and SD at their initial values but for the pulse counts SD50 to SD55 (appendix 2); the input filter as the system block has it."""
+        self.inputs.set_filter(self.inputs.usual_us)
         model = self.model
         registers = self.memory.lists[model.special_words]
         pulses = registers[50:56]
@@ -316,9 +330,13 @@ class Plc:
 
     def advance(self, ms: float) -> None:
         """Simulated time goes on by `ms` milliseconds: as many scans as begin in it."""
-        self._asked = max(self._asked, self.clock[0] - self.period_us) + round(ms * 1000)
+        self._asked = self.clock[0] + round(1000 * self.left(ms))
         while self.clock[0] < self._asked:
             self._one_scan()
+
+    def left(self, ms: float) -> float:
+        """How much of the next `ms` milliseconds lies ahead: an `advance` before may have ended in the middle of a scan."""
+        return ms - (self.clock[0] - max(self._asked, self.clock[0] - self.period_us)) / 1000
 
     @property
     def period_us(self) -> int:
@@ -336,6 +354,8 @@ class Plc:
             self._serve_queue()
         if self.inputs.changed:
             self.inputs.refresh(now)
+        if now >= self.rtc.due:
+            self.rtc.refresh(now)
         if self.running:
             self.clocks.refresh(now, self._first)
             if self.timers.watched:
@@ -434,9 +454,16 @@ class Plc:
 
     def _spend(self, steps: int) -> None:
         """A loop or a jump back executes `steps` once more; the watchdog looks at the sum (decision on 2.1.2)."""
-        self._spent_ns += max(1, steps) * self.model.instruction_ns
+        self._take(max(1, steps) * self.model.instruction_ns)
+
+    def _take(self, ns: int) -> None:
+        self._spent_ns += ns
         if self._spent_ns > self.system.watchdog_ms * 1_000_000 > 0:
             raise Overrun
+
+    def lengthen(self, us: int) -> None:
+        """An instruction takes so much more time than its steps tell."""
+        self._take(1000 * us)
 
     def release(self, claim: int) -> None:
         """The flow of a command has gone, or its MC or step has been left: what it held is given back."""
@@ -476,6 +503,15 @@ class Plc:
         return (self.clock[0] - began) / 1000
 
     @property
+    def clock_time(self) -> datetime:
+        """Date and time of the real-time clock, which starts at 2000-01-01 0:00:00 and goes with simulated time; assign a datetime to set it."""
+        return self.rtc.moment(self.clock[0])
+
+    @clock_time.setter
+    def clock_time(self, moment: datetime) -> None:
+        self.rtc.put(moment, self.clock[0])
+
+    @property
     def time_us(self) -> int:
         """Simulated time since power-up in microseconds."""
         return self.clock[0]
@@ -503,6 +539,60 @@ class Plc:
         """X is the wiring: the level is held on the terminal."""
         for place in range(4 * device.digits if isinstance(device, Bits) else 1):
             self.inputs.set(device.number + place, value >> place & 1, self.clock[0])
+
+    # -- signals ------------------------------------------------------------------------------------------------
+
+    def pulse(self, name: str, count: int = 1, ms: float = 10, bounce_ms: float = 0) -> None:
+        """Give an input `count` equal pulses in the next `ms` milliseconds; it is OFF before, between and after them.
+
+        A later `plc["X0"] = 1` ends the signal. `bounce_ms` lets the contact bounce that long behind each edge.
+        """
+        self._drive(name, Train(self.clock[0], round(ms * 1000), max(1, count), count), bounce_ms)
+
+    def square(self, name: str, hz: float, duty: float = 0.5) -> None:
+        """Give an input pulses of `hz` without end; `duty` is the share of the period that is ON."""
+        if not 0 < hz <= 200_000 or not 0 < duty < 1:
+            raise EcsimError(f"{hz!r} Hz with duty {duty!r}: frequencies go up to 200000 Hz, the duty lies between 0 and 1")
+        rise = round((1 - duty) * PARTS / 2)
+        self._drive(name, Train(self.clock[0], 1_000_000_000, round(hz * 1000), None, rise, PARTS - rise), 0)
+
+    def quadrature(self, a: str, b: str, count: int | None = None, direction: int = 1, ms: float = 10) -> None:
+        """Give two inputs the phases of an encoder: `count` cycles in the next `ms` milliseconds, A leading for direction 1, B for -1."""
+        if direction not in (1, -1):
+            raise EcsimError(f"the direction is 1 or -1, not {direction!r}")
+        signals = quadrature(self.clock[0], round(ms * 1000), max(1, count or 1), count, direction)
+        for name, signal in zip((a, b), signals, strict=True):
+            self._drive(name, signal, 0)
+
+    def signal(self, name: str, points: Iterable[tuple[float, int]], bounce_ms: float = 0) -> None:
+        """Give an input a recorded or computed signal: (ms from now, level) in order of time."""
+        number = self._input(name)
+        self._drive(name, changes(points, self.clock[0], self.inputs.terminals[number]), bounce_ms)
+
+    def wire(self, output: str, name: str) -> None:
+        """Connect the pulse output Y0 or Y1 to an input."""
+        device, _ = self.memory.parse(output, self._names)
+        if not isinstance(device, Device) or device.area != "Y" or device.number >= len(self.outputs.axes):
+            raise EcsimError(f"{output} is no pulse output; Y0 and Y1 are")
+        self._drive(name, Wired(self.outputs, device.number), 0)
+
+    def _input(self, name: str) -> int:
+        device, _ = self.memory.parse(name, self._names)
+        if not isinstance(device, Device) or device.area != "X":
+            raise EcsimError(f"{name} is no input; signals go to X devices")
+        return device.number
+
+    def _drive(self, name: str, signal: Signal, bounce_ms: float) -> None:
+        number = self._input(name)
+        if bounce_ms:
+            signal = bouncing(signal, self.clock[0], round(bounce_ms * 1000))
+        self.inputs.drive(number, signal, self.clock[0])
+        self.counters.check()
+
+    @property
+    def warnings(self) -> list[str]:
+        """What exceeds the frequencies that the counters can follow (8.1.4), in words."""
+        return list(self.counters.warnings)
 
     def _read_only(self, device: Device | Bits) -> bool:
         """A write from outside to what the system writes is ignored (3.1.9)."""

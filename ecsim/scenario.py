@@ -24,7 +24,7 @@ _SYSTEM_KEYS = {
     "constant_scan_ms",
     "input_filter_ms",
 }
-_STEP_KEYS = {"set", "scans", "ms", "expect", "expect_range", "error", "action", "note"}
+_STEP_KEYS = {"set", "pulses", "quadrature", "scans", "ms", "expect", "expect_range", "error", "action", "note"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +73,7 @@ def run_steps(plc: Plc, steps: list[dict[str, Any]]) -> Iterator[Mismatch]:
             raise EcsimError(f"step {number}: the key {min(unknown)!r} is not known; known are {', '.join(sorted(_STEP_KEYS))}")
         _act(plc, step.get("action"), number)
         plc.set(step.get("set", {}))
+        _signals(plc, step)
         if "ms" in step:
             plc.advance(ms=step["ms"])
         else:
@@ -88,6 +89,16 @@ def run_steps(plc: Plc, steps: list[dict[str, Any]]) -> Iterator[Mismatch]:
         record = f"{plc.model.special_words}{plc.model.registers['faults']}"
         if "error" in step and plc[record] != step["error"]:
             yield Mismatch(number, record, plc[record], step["error"])
+
+
+def _signals(plc: Plc, step: dict[str, Any]) -> None:
+    """The pulses of a step, spread evenly over its time."""
+    if "pulses" in step or "quadrature" in step:
+        ms = plc.left(step["ms"]) if "ms" in step else step.get("scans", 0) * plc.period_us / 1000
+        for name, count in step.get("pulses", {}).items():
+            plc.pulse(name, count, ms)
+        if (phases := step.get("quadrature")) is not None:
+            plc.quadrature(phases["A"], phases["B"], phases["count"], phases["direction"], ms)
 
 
 def _act(plc: Plc, action: str | None, number: int) -> None:
@@ -127,18 +138,12 @@ def _system(case: dict[str, Any], model: str) -> SystemBlock:
             area: [(memory.parse(_named(area, first))[0].number, memory.parse(_named(area, last))[0].number) for first, last in ranges]
             for area, ranges in given["retain"].items()
         }
-    filter_ms = given.pop("input_filter_ms", None)
-    if filter_ms is None:
-        filter_ms = get_model(model).filter_ms if _uses_refresh_filter(case["il"]) else 0
+    filter_ms = given.pop("input_filter_ms", 0)  # ideal inputs until the program executes REFF
     return SystemBlock(**given, input_filter_ms=filter_ms, data_block=case.get("data_block", {}))
 
 
 def _named(area: str, bound: str | int) -> str:
     return bound if isinstance(bound, str) and not bound.isdigit() else f"{area}{bound}"
-
-
-def _uses_refresh_filter(text: str) -> bool:
-    return any(line.split()[:1] == ["REFF"] for line in text.upper().splitlines())
 
 
 def load_cases(path: str | Path) -> list[dict[str, Any]]:

@@ -65,7 +65,7 @@ class _Assembler:
                 instruction.steps = self._steps(instruction, index in stepping)
                 if instruction.definition.keeps:
                     instruction.slot, slots = slots, slots + 1
-                if instruction.spelled in self.at_rise:
+                if instruction.definition.rising or instruction.spelled in self.at_rise:
                     instruction.pulse, slots = slots, slots + 1
                 position, step = position + 1, step + instruction.steps
             for region in _regions(unit.nodes):

@@ -178,7 +178,7 @@ class Resolver:
     def _device_range(self, spec: OperandSpec, device: Device, text: str) -> None:
         low, high = spec.range
         if not low <= device.number <= high:
-            raise Refused(f"{text} cannot be {spec.name}", f"{spec.name} goes from {device.area}{low} to {device.area}{high}", "3.1.7")
+            raise Refused(f"{text} cannot be {spec.name}", f"{spec.name} goes from {device.area}{low} to {device.area}{high}", "")
 
     def _index(self, spec: OperandSpec, operand: Device | Bits, text: str) -> None:
         if operand.index is None:

@@ -119,7 +119,7 @@ class Writer:
 
     def _special(self, instruction: Instruction, word: str, flow: str) -> str:
         """What a function gets that is no operand."""
-        known = {"flow": flow, "machine": "machine", "now": "CLOCK[0]", "state": f"E[{instruction.slot}]", "claim": str(instruction.slot)}
+        known = {"flow": flow, "machine": "machine", "now": "CLOCK[0]", "scan": "machine.scans", "state": f"E[{instruction.slot}]", "claim": str(instruction.slot)}
         return known.get(word) or "{}[{}]".format(*self.model.flag(word))
 
     @staticmethod
@@ -151,7 +151,9 @@ class Writer:
         name = f"place_{len(self.globals)}"
         self.globals[name] = operand
         length = spec.span or (spec.type.words if operand.area not in ("T", "C") else 1) or 1
-        return name if operand.index is None else f"placed({name}, {operand.index_area}[{operand.index}], {length})"
+        offset = "0" if operand.index is None else f"{operand.index_area}[{operand.index}]"
+        fits = isinstance(operand, Bits) or operand.number + length <= self.model.areas[operand.area].count
+        return name if operand.index is None and fits else f"placed({name}, {offset}, {length})"
 
     def _count(self, instruction: Instruction, spec: OperandSpec) -> str:
         """The length of a span as an expression."""

@@ -20,7 +20,7 @@ class Inputs(Unit):
         self.terminals = [False] * memory.model.areas["X"].count
         self.filtered = frozenset(range(memory.model.filter_inputs))
         self.unfiltered: frozenset[int] = frozenset()
-        self.filter_us = round(filter_ms * 1000)
+        self.filter_us = self.usual_us = round(filter_ms * 1000)  # REFF changes it until the next RUN
         self.waiting: dict[int, tuple[int, int]] = {}  # number -> (level, time from which it counts)
         self.signals: dict[int, Signal] = {}
         self.time = 0  # up to which signals have been taken into account
@@ -65,6 +65,13 @@ class Inputs(Unit):
         self.changed = True
         self.wake()
 
+    def set_filter(self, filter_us: int) -> None:
+        """Change the filter's time, also for the levels that wait to be taken over."""
+        later = filter_us - self.filter_us
+        if later:
+            self.waiting = {number: (level, due + later) for number, (level, due) in self.waiting.items()}
+            self.filter_us = filter_us
+
     def _catch(self, number: int) -> None:
         if self.capture is not None and (self.catching or number not in self.taken):
             self.memory.lists[self.memory.model.special_bits][self.capture + number] = True
@@ -78,19 +85,29 @@ class Inputs(Unit):
             self.terminals[number] = signal.level(now)
         self.time = now
 
-    def refresh(self, now: int) -> None:
-        """Take the terminals over into the input image."""
+    def refresh(self, now: int, numbers: range | None = None) -> None:
+        """Take the terminals, or only those with these numbers, over into the input image."""
         image = self.memory.lists["X"]
+        if numbers is not None:
+            image[numbers.start : numbers.stop] = self._fresh(now, numbers)[numbers.start : numbers.stop]
+            return
         if not self.waiting and not self.signals:
             image[:] = self.terminals
             self.changed = False
             return
+        image[:] = self._fresh(now, range(len(image)))
+
+    def _fresh(self, now: int, numbers: range) -> list[bool]:
+        """The terminals behind the filter, for the inputs with these numbers."""
+        image = self.memory.lists["X"]
         fresh = self.terminals[:]
-        for number, (level, due) in list(self.waiting.items()):
+        for number in [n for n in self.waiting if n in numbers]:
+            level, due = self.waiting[number]
             fresh[number] = level if now >= due else image[number]
             if now >= due:
                 del self.waiting[number]
-        for number, signal in list(self.signals.items()):
+        for number in [n for n in self.signals if n in numbers]:
+            signal = self.signals[number]
             least = self.filter_us if number in self.filtered and number not in self.unfiltered else 0
             level = steady(signal, now, least) if least else self.terminals[number]
             if level is not None:
@@ -101,13 +118,14 @@ class Inputs(Unit):
             if signal.end is not None and signal.end + least <= now:
                 del self.signals[number]
                 self.wake(bool(self.signals))
-        image[:] = fresh
+        return fresh
 
     def snapshot(self) -> tuple:
-        return list(self.terminals), dict(self.waiting), dict(self.signals), self.time, self.catching
+        return list(self.terminals), dict(self.waiting), dict(self.signals), self.time, self.catching, self.filter_us
 
     def restore(self, snapshot: tuple) -> None:
         self.terminals[:] = snapshot[0]
-        self.waiting, self.signals, self.time, self.catching = dict(snapshot[1]), dict(snapshot[2]), snapshot[3], snapshot[4]
+        self.waiting, self.signals = dict(snapshot[1]), dict(snapshot[2])
+        self.time, self.catching, self.filter_us = snapshot[3:]
         self.wake(bool(self.signals))
         self.changed = True

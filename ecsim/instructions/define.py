@@ -42,6 +42,7 @@ class Definition:
     resets: bool = False  # an OFF written to a T or C clears its value too (5.1.17)
     transition_steps: int | None = None  # its length where it leads to, or clears, a step (5.3.2 to 5.3.4)
     bus: bool = False  # stands on the left bus, without a flow before it
+    rising: bool = False  # executed only in the scan in which its flow rises
     faults: tuple[int, ...] = ()
     check: Callable | None = None  # (values of the constant operands) -> what is wrong with them, or None
     counted: str | None = None  # which of the model's limits a program's instructions of this kind count towards

@@ -14,8 +14,8 @@ left. After the type may follow, in this order:
 
 A word in small letters is no operand. Left of the arrow it is something else that the function is given, right of it
 something that the function gives after its values: a flag by its meaning (carry), `state`, which the instruction keeps
-from one execution to the next (False at first), `now`, the simulated time in microseconds, or `claim`, the number under
-which a command holds something until its flow goes; the name of an operand in small letters (s3) is the number of its
+from one execution to the next (False at first), `now`, the simulated time in microseconds, `scan`, the number of the scan,
+or `claim`, the number under which a command holds something until its flow goes; the name of an operand in small letters (s3) is the number of its
 device.
 """
 
@@ -59,11 +59,12 @@ SPECIAL: dict[str, tuple[DataType, str, tuple[int, int] | None]] = {
     "PLACE": (WORD, "D V", None),
     "DPLACE": (DINT, "D", None),
     "TABLE": (DINT, "D", None),
+    "SAVED": (WORD, "D", (6000, 6999)),
     "BLOCK": (WORD, READABLE["WORD"], None),
 }
 # Of these, what a command works on for as long as it is driven: it gets the number of a counter, of a pulse output or of the
 # first D of a table; of a POINT or PLACE the device itself, for what it reads and writes in its own time.
-UNITS = frozenset({"HCOUNTER", "PULSE", "POINT", "PLACE", "DPLACE", "TABLE", "BLOCK"})
+UNITS = frozenset({"HCOUNTER", "PULSE", "POINT", "PLACE", "DPLACE", "TABLE", "SAVED", "BLOCK"})
 
 
 @dataclass(frozen=True, slots=True)
