@@ -114,3 +114,9 @@ def test_the_scan_times_go_on_after_a_step_back(run):
     plc.restore(before)
     plc.scan()
     assert plc["SD30"] == 1
+
+
+def test_devices_in_a_row_that_leave_their_area_are_error_65(run):
+    plc = run("LD SM0\nABS X377 M10 D100")  # it reads X377 and the two behind it
+    plc.scan()
+    assert plc["SD20"] == 65
