@@ -300,3 +300,64 @@ class PulseOutputs(Unit):
         self.axes = tuple(replace(axis) for axis in axes)
         self.history = tuple(deque(kept, maxlen=KEPT) for kept in history)
         self._rest()
+
+
+class Wired:
+    """A pulse output as the signal of an input that is connected to it (a `Signal`, without end)."""
+
+    end = None
+    intervals = 3
+
+    def __init__(self, outputs: PulseOutputs, number: int):
+        self.outputs, self.number = outputs, number
+
+    def _parts(self, moment: int) -> list[tuple[Segment | Wave, int | None]]:
+        """The segments that have a part after a moment, each with the number of its pulses; what is remembered comes first."""
+        kept = []
+        for segment in reversed(self.outputs.history[self.number]):
+            part, pulses = (segment, segment.pulses) if isinstance(segment, Segment) else (segment[0], segment[0].started(segment[1]))
+            if part.start + part.point(2 * pulses) < moment if isinstance(part, Segment) else segment[1] < moment:
+                break
+            kept.append((part, pulses))
+        return [*reversed(kept), *((segment, segment.pulses) for segment in self.outputs.axes[self.number].segments)]
+
+    @staticmethod
+    def _passed(part: Segment | Wave, pulses: int | None, rising: bool, moment: int) -> int:
+        if isinstance(part, Segment):
+            n = part.started(moment) if rising else part.counted(moment)
+        else:
+            n = part.started(moment if rising else moment - part.width)
+        return n if pulses is None else min(n, pulses)
+
+    def count(self, rising: bool, after: int, until: int) -> int:
+        return sum(self._passed(*part, rising, until) - self._passed(*part, rising, after) for part in self._parts(after))
+
+    def time(self, rising: bool, after: int, n: int) -> int | None:
+        for part, pulses in self._parts(after):
+            passed = self._passed(part, pulses, rising, after)
+            if pulses is None or passed + n <= pulses:
+                return part.edge(rising, passed + n - 1)
+            n -= pulses - passed
+        return None
+
+    def next(self, after: int) -> tuple[int, bool] | None:
+        found = [(moment, rising) for rising in (False, True) if (moment := self.time(rising, after, 1)) is not None]
+        return min(found, default=None)
+
+    def before(self, moment: int) -> int | None:
+        last = None
+        for part, pulses in self._parts(0):
+            for rising in (True, False):
+                passed = self._passed(part, pulses, rising, moment)
+                if passed:
+                    edge = part.edge(rising, passed - 1)
+                    last = edge if last is None else max(last, edge)
+        return last
+
+    def level(self, moment: int) -> bool:
+        return any(self._passed(*part, True, moment) > self._passed(*part, False, moment) for part in self._parts(moment))
+
+    @property
+    def hertz(self) -> float:
+        segments = self.outputs.axes[self.number].segments
+        return max((segment.frequency(segment.start) for segment in segments), default=0.0)

@@ -19,6 +19,10 @@ class Signal(Protocol):
 
     @property
     def end(self) -> int | None: ...
+    @property
+    def intervals(self) -> int: ...
+    @property
+    def hertz(self) -> float: ...
     def level(self, moment: int) -> bool: ...
     def next(self, after: int) -> tuple[int, bool] | None: ...
     def count(self, rising: bool, after: int, until: int) -> int: ...
@@ -79,6 +83,11 @@ class Train:
         return None if self.total is not None and index >= self.total else self._at(index, phase)
 
     @property
+    def intervals(self) -> int:
+        """How many intervals, from the last one back, tell all that there is."""
+        return STEADY
+
+    @property
     def hertz(self) -> float:
         """Pulses a second."""
         return 1e6 * self.pulses / self.span
@@ -119,6 +128,10 @@ class Edges:
     def time(self, rising: bool, after: int, n: int) -> int | None:
         place = self._from(rising) + 2 * (self._until(rising, after) + n - 1)
         return self.times[place] if place < len(self.times) else None
+
+    @property
+    def intervals(self) -> int:
+        return len(self.times) + 1
 
     @property
     def hertz(self) -> float:
@@ -172,7 +185,7 @@ def bouncing(signal: Signal, after: int, bounce_us: int, contacts: int = 3) -> E
 def steady(signal: Signal, moment: int, least: int) -> bool | None:
     """The newest level that a filter which wants `least` us of rest has let pass by `moment`; None when it has let none."""
     stop = until = moment
-    for _ in range(STEADY if isinstance(signal, Train) else len(signal.times) + 1):
+    for _ in range(signal.intervals):
         begin = signal.before(until)
         if begin is None:
             return None
