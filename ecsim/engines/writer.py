@@ -150,7 +150,8 @@ class Writer:
             return self.access.index(operand) if operand.index is not None else str(operand.number)
         name = f"place_{len(self.globals)}"
         self.globals[name] = operand
-        length = spec.span or (spec.type.words if operand.area not in ("T", "C") else 1) or 1
+        own = spec.type.words if operand.area not in ("T", "C") else 1
+        length = spec.span if isinstance(spec.span, int) else own or 1  # a length that is an operand is the function's to check
         offset = "0" if operand.index is None else f"{operand.index_area}[{operand.index}]"
         fits = isinstance(operand, Bits) or operand.number + length <= self.model.areas[operand.area].count
         return name if operand.index is None and fits else f"placed({name}, {offset}, {length})"
