@@ -45,7 +45,7 @@ def fault_codes(definition: Definition) -> dict[int, str]:
     codes |= dict.fromkeys(_raised(definition.function, set()), "")
     if any(spec.range and spec.plain and spec.read and spec.areas != {"const"} for spec in definition.operands):
         codes.setdefault(OPERAND, "a value outside its range")
-    if any(spec.span in {other.name for other in definition.operands} for spec in definition.operands):
+    if any(spec.span in {other.name for other in definition.operands if other.areas != {"const"}} for spec in definition.operands):
         codes.setdefault(OPERAND, "a number of elements below zero")
     if any(spec.span for spec in definition.operands):
         codes.setdefault(RANGE, "elements beyond the last device")
@@ -78,7 +78,7 @@ def section_title(section: str) -> str:
         (sys.modules[row.function.__module__].__doc__ or "").strip().split("\n")[0] for row in TABLE.values() if section_of(row) == section
     }
     head = next((head for head in sorted(heads) if head.startswith(f"{section}:")), f"{section}: instructions")
-    return head.removeprefix(f"{section}:").strip().split(". ")[0].rstrip(".")
+    return head.removeprefix(f"{section}:").strip().split(". ")[0].split(": ")[0].rstrip(".")
 
 
 def sections() -> dict[str, list[str]]:
