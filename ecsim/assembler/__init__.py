@@ -1,8 +1,11 @@
 """From text to a program: read, resolved, checked against TABLE and the model, all problems reported together."""
 
+from dataclasses import replace
+
 from ..devices import Constant, Device, Name
 from ..errors import Problem, ProgramError
 from ..instructions import TABLE, Definition
+from ..instructions.signature import OperandSpec, parse_signature
 from ..models import Model, get_model
 from ..values import BOOL, TYPES
 from .inputs import check_inputs
@@ -22,6 +25,7 @@ def assemble(text: str, model: str | Model, name: str = "") -> Program:
 class _Assembler:
     def __init__(self, source: Source, model: Model):
         self.source, self.model = source, model
+        self.parameters: dict[tuple[str, str, str], OperandSpec] = {}  # of CALL, by role, type and name
         own = {spelled: TABLE[mnemonic] for spelled, mnemonic in model.spelling.items()}
         own = own or {mnemonic: row for mnemonic, row in TABLE.items() if model.name in row.models}
         rising = {
@@ -87,7 +91,7 @@ class _Assembler:
         folded: dict[str, str] = {}
         resolver = Resolver(self.model, {})
         for raw in self.source.globals:
-            if not self._good_name(raw, resolver):
+            if not self._good_name(raw):
                 continue
             if raw.name.casefold() in folded:
                 self.source.report(raw.line, f"the name {raw.name} is declared twice", "names differ by more than case")
@@ -98,6 +102,15 @@ class _Assembler:
                     resolver._number(device.area, device.number, 1, raw.what)
             except Refused as refused:
                 self.source.report(raw.line, refused.message, refused.hint, refused.section, word=2)
+                continue
+            if isinstance(device, Device) and device.area in self.model.local_areas:
+                self.source.report(
+                    raw.line,
+                    f"{raw.name} names {device}, which belongs to one program unit only",
+                    f"name another device; {' and '.join(self.model.local_areas)} are given to VAR_TEMP and the like",
+                    "3.1.2",
+                    word=2,
+                )
                 continue
             if not isinstance(device, Device) or device.index is not None:
                 self.source.report(
@@ -118,23 +131,22 @@ class _Assembler:
             )
         return variables
 
-    def _good_name(self, raw: RawVariable, resolver: Resolver) -> bool:
+    def _good_name(self, raw: RawVariable, word: int = 0) -> bool:
         name = raw.name
         taken = ""
         if not name.isidentifier():
             taken = "a name is made of letters, digits and _ and does not begin with a digit"
-        elif self._is_operand(name, resolver):
+        elif self._is_operand(name):
             taken = "it reads like a device or a number"
-        elif name.upper() in self.definitions:
-            taken = "it is the name of an instruction"
+        elif name.upper() in self.definitions or name.upper() in TYPES:
+            taken = f"it is the name of {'an instruction' if name.upper() in self.definitions else 'a data type'}"
         if taken:
-            self.source.report(raw.line, f"{shown(name)} cannot be a variable's name", taken)
+            self.source.report(raw.line, f"{shown(name)} cannot be a variable's name", taken, "2.2.3", word=word)
         return not taken
 
-    @staticmethod
-    def _is_operand(name: str, resolver: Resolver) -> bool:
+    def _is_operand(self, name: str) -> bool:
         try:
-            return resolver.model.syntax.parse(name) is not None
+            return self.model.syntax.parse(name) is not None
         except ValueError:
             return True
 
@@ -151,12 +163,16 @@ class _Assembler:
         room = dict.fromkeys(self.model.local_areas, 0)
         count = {"bit": 0, "word": 0}
         for declared in raw.variables:
+            if not self._good_name(declared, declared.word):
+                continue
             kind = TYPES.get(declared.what)
             if kind is None:
-                self.source.report(declared.line, f"{shown(declared.what)} is no data type", f"use {', '.join(TYPES)}", "4.4.3", word=3)
+                self.source.report(
+                    declared.line, f"{shown(declared.what)} is no data type", f"use {', '.join(TYPES)}", "4.4.3", word=declared.word + 2
+                )
                 continue
             if declared.name.casefold() in unit.variables:
-                self.source.report(declared.line, f"the variable {shown(declared.name)} is declared twice", "", "4.4.3", word=1)
+                self.source.report(declared.line, f"the variable {shown(declared.name)} is declared twice", "", "4.4.3", word=declared.word)
                 continue
             if raw.kind != "SUBROUTINE" and declared.role != "TEMP":
                 self.source.report(declared.line, f"only a subroutine has {declared.role} variables", "", "4.4.3")
@@ -265,22 +281,40 @@ class _Assembler:
         if callee is None:
             known = ", ".join(u.name for u in self.units if u.kind == "SUBROUTINE")
             hint = f"there is {known}" if known else "define it between SUBROUTINE NAME and END_SUBROUTINE"
-            self.source.report(statement.line, f"there is no subroutine {shown(name)}", hint, definition.section, word=1)
+            message = f"there is no subroutine {shown(name)}" if name else "CALL names no subroutine"
+            self.source.report(statement.line, message, hint, definition.section, word=min(len(words), 1))
             return None
         parameters = callee.parameters
         if len(parameters) != len(words) - 1:
             names = " ".join(variable.name for variable in parameters) or "none"
             self.source.report(
-                statement.line, f"{callee.name} takes {len(parameters)} operands ({names}), found {len(words) - 1}", "", definition.section
+                statement.line,
+                f"{callee.name} takes {len(parameters)} operand{'s' if len(parameters) != 1 else ''} ({names}), found {len(words) - 1}",
+                "",
+                definition.section,
             )
             return None
         operands: list = [Name(callee.name)]
         for place, (variable, word) in enumerate(zip(parameters, words[1:], strict=True), 2):
             try:
-                operands.append(self.resolver.operand(_parameter_spec(variable), word, unit.variables))
+                operands.append(self.resolver.operand(self._parameter_spec(variable), word, unit.variables))
             except Refused as refused:
                 self.source.report(statement.line, refused.message, refused.hint, refused.section or definition.section, word=place)
         return tuple(operands) if len(operands) == len(words) else None
+
+    def _parameter_spec(self, variable: Variable) -> OperandSpec:
+        """The operand table row that a subroutine's variable stands for at the call (table 3-3)."""
+        key = (variable.role, variable.type.name, variable.name)
+        if key not in self.parameters:
+            kind = variable.type.name
+            special = {"BOOL": "+SM", "REAL": ""}.get(kind, "+SD")
+            text = {
+                "INPUT": f"P:{kind}+const" if kind == "BOOL" else f"P:{kind}",
+                "OUTPUT": f"-> P:{kind}{special}",
+                "IN_OUT": f"P:{kind}{special} -> P",
+            }[variable.role]
+            self.parameters[key] = replace(parse_signature(text)[0][0], name=variable.name)
+        return self.parameters[key]
 
     def _steps(self, instruction: Instruction, in_step: bool) -> int:
         definition, operands = instruction.definition, instruction.operands
@@ -345,25 +379,6 @@ class _Assembler:
                     calls[unit.name.upper()][0], f"calls are nested {depth[unit.name.upper()]} deep", f"at most {limit}", "4.4.2"
                 )
             deepest(unit.name.upper(), (unit.name.upper(),))
-
-
-_PARAMETERS: dict[tuple[str, str], object] = {}
-
-
-def _parameter_spec(variable: Variable):
-    """The operand table row that a subroutine's variable stands for at the call (table 3-3)."""
-    from ..instructions.signature import parse_signature
-
-    key = (variable.role, variable.type.name)
-    if key not in _PARAMETERS:
-        kind = variable.type.name
-        text = {
-            "INPUT": f"P:{kind}+const" if kind == "BOOL" else f"P:{kind}",
-            "OUTPUT": f"-> P:{kind}{'+SM' if kind == 'BOOL' else '+SD' if kind != 'REAL' else ''}",
-            "IN_OUT": f"P:{kind}{'+SM' if kind == 'BOOL' else '+SD' if kind != 'REAL' else ''} -> P",
-        }[variable.role]
-        _PARAMETERS[key] = parse_signature(text)[0][0]
-    return _PARAMETERS[key]
 
 
 def _regions(nodes):

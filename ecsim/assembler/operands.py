@@ -1,5 +1,7 @@
 """Operands: each word of a statement resolved and held against its row of the instruction's operand table (3.3.2)."""
 
+from difflib import get_close_matches
+
 from ..devices import Bits, Constant, Device, Name, Operand, OperandError, Text, number_text
 from ..instructions.signature import OperandSpec
 from ..models import Model
@@ -44,13 +46,26 @@ class Resolver:
         if operand is None:
             variable = self._by_fold.get(text.casefold())
             if variable is None:
-                raise Refused(
-                    f"{shown(text)} is neither a device of {self.model.name} nor a declared name",
-                    "declare it: VAR_GLOBAL NAME AT DEVICE END_VAR",
-                    "",
-                )
+                raise Refused(f"{shown(text)} is neither a device of {self.model.name} nor a declared name", self._instead(text), "")
             return variable.device
         return operand
+
+    def _instead(self, text: str) -> str:
+        """What to write for a word that is declared nowhere: perhaps it is spelled as elsewhere, or mistyped."""
+        prefix, digits = text[:1].upper(), text[1:]
+        if prefix in ("K", "H") and self._means(written := digits if prefix == "K" else f"16#{digits}"):
+            return f"constants are written {written} here"
+        if self._means(written := text.strip(";()")):
+            return f"write {written}"
+        close = get_close_matches(text.casefold()[:40], self._by_fold, 1, 0.75)
+        return f"did you mean {self._by_fold[close[0]].name}?" if close else "declare it between VAR_GLOBAL and END_VAR: NAME AT DEVICE"
+
+    def _means(self, text: str) -> bool:
+        """Whether a word is an operand or a declared name."""
+        try:
+            return text.casefold() in self._by_fold or self.model.syntax.parse(text) is not None
+        except OperandError:
+            return False
 
     def operand(self, spec: OperandSpec, text: str, local: dict[str, Variable]) -> Operand:
         """The operand for one place of an instruction; raises Refused when it does not fit there."""

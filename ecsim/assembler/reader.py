@@ -35,6 +35,7 @@ class RawVariable:
     role: str
     line: int
     comment: str = ""
+    word: int = 0  # which word of the line is the name
 
 
 @dataclass(slots=True)
@@ -87,6 +88,7 @@ class _Reader:
         self.unit: RawUnit | None = None
         self.implicit: RawUnit | None = None
         self.in_globals = False
+        self.role = ""  # of the variables between VAR_INPUT, VAR_OUTPUT ... and END_VAR
         self.title: list[str] = []
 
     def read(self) -> Source:
@@ -105,7 +107,9 @@ class _Reader:
             self._line(words, comment.strip(), number)
         if self.unit is not None:
             source.report(
-                self.unit.line, f"{self.unit.kind} {self.unit.name} has no end", f"write END_{self._header(self.unit)} after its last line"
+                self.unit.line,
+                f"{self._header(self.unit)} {self.unit.name} has no end",
+                f"write END_{self._header(self.unit)} after its last line",
             )
         if self.in_globals:
             source.report(len(lines), "VAR_GLOBAL has no END_VAR")
@@ -150,6 +154,8 @@ class _Reader:
             self._directive(head, words, comment, number)
         elif self.in_globals:
             self._global(words, comment, number)
+        elif self.role:
+            self._local(self.role, words, comment, number)
         else:
             unit = self.unit or self._implicit(number)
             unit.statements.append(Statement(head, tuple(words[1:]), number, comment, "\n".join(self.title)))
@@ -176,7 +182,7 @@ class _Reader:
         elif head.startswith("END_") and head != "END_VAR":
             if self.unit is None or head != f"END_{self._header(self.unit)}":
                 report(number, f"{head} ends nothing", f"open it with {head[4:]} NAME first")
-            self.unit = None
+            self.unit, self.role = None, ""
         elif head == "VAR_GLOBAL":
             if self.unit is not None or self.in_globals:
                 report(number, "VAR_GLOBAL stands inside another block", "the variables of the whole program come before PROGRAM MAIN")
@@ -184,19 +190,23 @@ class _Reader:
             if len(words) > 1:
                 self._global(words[1:], comment, number)
         elif head == "END_VAR":
-            # Locals are declared a line each; an END_VAR after them is accepted, as IEC texts have it.
+            # Locals are declared a line each; VAR_INPUT, lines and END_VAR are accepted, as IEC texts have them.
             if not self.in_globals and self.unit is None:
-                report(number, "END_VAR ends nothing")
-            self.in_globals = False
+                report(number, "END_VAR ends nothing", "it ends VAR_GLOBAL")
+            self.in_globals, self.role = False, ""
+        elif len(words) == 1 and self.unit is not None:
+            self.role = head.removeprefix("VAR_")
         else:
-            self._local(head.removeprefix("VAR_"), words, comment, number)
+            self._local(head.removeprefix("VAR_"), words[1:], comment, number)
 
     def _open(self, head: str, words: list[str], number: int) -> None:
         report = self.source.report
         kind = "MAIN" if head == "PROGRAM" else head
         name = words[1] if len(words) > 1 else ""
         if self.unit is not None:
-            report(number, f"{head} inside {self.unit.kind} {self.unit.name}", f"close it with END_{self._header(self.unit)} first")
+            report(
+                number, f"{head} inside {self._header(self.unit)} {self.unit.name}", f"close it with END_{self._header(self.unit)} first"
+            )
         if self.in_globals:
             report(number, "VAR_GLOBAL has no END_VAR")
             self.in_globals = False
@@ -234,8 +244,9 @@ class _Reader:
         if unit is None:
             self.source.report(number, f"VAR_{role} stands outside a subroutine", "declare it after SUBROUTINE NAME")
             return
-        declaration = " ".join(words[1:]).replace(":", " : ").rstrip(";").split()
+        declaration = " ".join(words).replace(":", " : ").rstrip(";").split()
         if len(declaration) == 3 and declaration[1] == ":":
-            unit.variables.append(RawVariable(declaration[0], declaration[2].upper(), role, number, comment))
-        elif declaration:
-            self.source.report(number, f"{shown(' '.join(words))} declares no variable", f"write VAR_{role} NAME : INT, for example")
+            unit.variables.append(RawVariable(declaration[0], declaration[2].upper(), role, number, comment, word=0 if self.role else 1))
+        else:
+            hint = "end the variables with END_VAR, or " if self.role else ""
+            self.source.report(number, f"{shown(' '.join(words))} declares no variable", f"{hint}write VAR_{role} NAME : INT, for example")
