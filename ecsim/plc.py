@@ -18,7 +18,7 @@ from .hardware.counters import Counters
 from .hardware.eeprom import Eeprom
 from .hardware.faults import MEANINGS, STOPPING, Faults
 from .hardware.inputs import Inputs
-from .hardware.interrupts import Interrupts
+from .hardware.interrupts import POWER_LOSS, Interrupts
 from .hardware.meters import Meters
 from .hardware.modules import Rack
 from .hardware.pots import Potentiometers
@@ -261,6 +261,9 @@ class Plc:
 
     def power_cycle(self) -> None:
         """Power off and on again with the mode switch ON: what is not retained is cleared, then RUN. What is forced stays so (2.4.6)."""
+        if self.running:
+            self.interrupts.fire(POWER_LOSS)  # 9.7: its program still runs
+            self._serve_queue()
         self.stop()
         self._initialise(hold=False)
         self.inputs.waiting.clear()
