@@ -144,7 +144,8 @@ def contact_words(word: Word, labels: Labels) -> str:
 
 def inverted(word: Word) -> bool:
     """Whether a contact of one bit is closed while the bit is OFF."""
-    return bool(TABLE[word.mnemonic].function(False))
+    definition = TABLE[word.mnemonic]
+    return bool(definition.function(*[False] * len(definition.operands)))
 
 
 def output_words(word: Word, labels: Labels) -> str:
