@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from ..devices import Constant, Device, Name
+from ..devices import Bits, Constant, Device, Name
 from ..errors import Problem, ProgramError
 from ..instructions import TABLE, Definition
 from ..instructions.signature import OperandSpec, parse_signature
@@ -265,7 +265,7 @@ class _Assembler:
                 operands.append(self.resolver.operand(spec, word, unit.variables))
             except Refused as refused:
                 self.source.report(statement.line, refused.message, refused.hint, refused.section or definition.section, word=place)
-        if len(operands) < len(specs):
+        if len(operands) < len(specs) or not self._spans_fit(definition, operands, statement):
             return None
         if definition.check:
             wrong = definition.check(*(operand.value if isinstance(operand, Constant) else operand for operand in operands))
@@ -273,6 +273,23 @@ class _Assembler:
                 self.source.report(statement.line, wrong, "", definition.section)
                 return None
         return tuple(operands)
+
+    def _spans_fit(self, definition: Definition, operands: list, statement: Statement) -> bool:
+        """Whether no span whose length is known already reaches beyond the last device; others are held against it when they are executed."""
+        values = None
+        fits = True
+        for place, (spec, operand) in enumerate(zip(definition.operands, operands, strict=True), 1):
+            if spec.span is None or not isinstance(operand, Device | Bits):
+                continue
+            if values is None:
+                pairs = zip(definition.operands, operands, strict=True)
+                values = {s.name: o.value for s, o in pairs if isinstance(o, Constant) and isinstance(o.value, int)}
+            try:
+                self.resolver.span(spec, operand, spec.length(values), statement.operands[place - 1])
+            except Refused as refused:
+                self.source.report(statement.line, refused.message, refused.hint, refused.section, word=place)
+                fits = False
+        return fits
 
     def _call_operands(self, definition: Definition, statement: Statement, unit: Unit):
         words = statement.operands

@@ -127,6 +127,21 @@ class Resolver:
             if spec.written:
                 self._writable(operand, max(1, spec.type.words), text)
 
+    def span(self, spec: OperandSpec, operand: Device | Bits, length: int | None, text: str) -> None:
+        """Hold the elements from an operand on, if their number is known, against the last device."""
+        if length is None or length < 1 or operand.index is not None:
+            return
+        room = self.model.areas[operand.area]
+        if isinstance(operand, Bits):
+            length *= 4 * operand.digits
+        elif room.kind == "word":
+            length *= spec.type.words
+        narrow = operand.area == "C" and spec.type.words == 1  # the counters behind the last one have 32 bits
+        last = (self.model.wide_counters if narrow else room.count) - 1
+        if operand.number + length - 1 > last:
+            name = f"{operand.area}{number_text(operand.area, last)}"
+            raise Refused(f"{shown(text)} reaches beyond {name}", f"it is the first of {length} {operand.area} devices", "3.2")
+
     def _area(self, spec: OperandSpec, area: str, text: str) -> None:
         if area not in spec.areas:
             what = "is read only" if spec.written and area in ("KnX", "X") else f"cannot be {spec.name}"

@@ -92,6 +92,15 @@ class OperandSpec:
         """Whether the function gets or gives its value, and not a unit, a number of a device or a name."""
         return self.kind not in SPECIAL
 
+    def length(self, values: dict[str, int]) -> int | None:
+        """How many elements its span has when the other operands have these values; None when that takes more to tell."""
+        if self.span is None or isinstance(self.span, int):
+            return self.span or 1
+        try:
+            return eval(self.span.strip("{}"), {"__builtins__": {}, "min": min, "max": max}, values)  # noqa: S307 - text of TABLE
+        except NameError:
+            return None
+
     @property
     def unit(self) -> bool:
         """Whether a command gets the device, and not what it holds."""
