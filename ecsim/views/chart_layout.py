@@ -41,10 +41,13 @@ class Leg:
 
 @dataclass(frozen=True, slots=True)
 class Jump:
-    """The end of a way: where it goes on, or that it ends."""
+    """The end of a way: the step or join where it goes on, or that it ends."""
 
     target: Device | None
-    word: Word | None = None
+    join: bool = False
+
+    def __str__(self) -> str:
+        return "end" if self.target is None else f"join {self.target}" if self.join else str(self.target)
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,7 +159,7 @@ class ChartLayout:
         out, y = Sketch(), 0.0
         while node is not None:
             if node in self.placed:  # another branch came first
-                y = self._arrow(out, 0, y, Jump(node.devices[0]))
+                y = self._arrow(out, 0, y, Jump(node.devices[0], node.joins))
                 break
             y = self._place(out, y, node)
             legs = [(leg, self._goals(leg, node, stop)) for leg in node.legs]
@@ -189,10 +192,9 @@ class ChartLayout:
             if isinstance(goal, Node) and (goal is stop or (goal not in self.placed and goal.order > node.order and self.depth < DEEPEST)):
                 goals.append(goal)
             elif isinstance(goal, Node):
-                word = next((w for w in leg.transition.targets if (w.operands[0],) == goal.devices), None) if leg.transition else None
-                goals.append(Jump(goal.devices[0], word))
+                goals.append(Jump(goal.devices[0], goal.joins))
             else:
-                goals.append(Jump(None if leg.transition.ends else goal.operands[0], goal))
+                goals.append(Jump(None if leg.transition.ends else goal.operands[0]))
         return goals
 
     def _follow(self, out: Sketch, y: float, leg: Leg, goals: Sequence[Node | Jump], stop: Node | None) -> tuple[float, Node | None]:
@@ -248,7 +250,7 @@ class ChartLayout:
             else:
                 inner = self.chain(goal, meeting or stop) if goal not in self.placed else None
                 if inner is None:
-                    sub.height = self._arrow(sub, 0, m.enter, Jump(goal.devices[0]))
+                    sub.height = self._arrow(sub, 0, m.enter, Jump(goal.devices[0], goal.joins))
                 else:
                     sub.include(inner, 0, m.enter)
                     sub.height, sub.open = m.enter + inner.height, inner.open
@@ -271,7 +273,7 @@ class ChartLayout:
         for leg, each in legs:
             sub = Sketch()
             again = [
-                goal if isinstance(goal, Jump) or goal not in self.placed or goal is stop or goal is meeting else Jump(goal.devices[0])
+                goal if isinstance(goal, Jump) or goal not in self.placed or goal is stop or goal is meeting else Jump(goal.devices[0], goal.joins)
                 for goal in each
             ]
             height, node = self._follow(sub, 0, leg, again, meeting or stop)

@@ -10,11 +10,12 @@ from .chart_layout import ChartLayout, Jump, Node, Sketch
 from .conditions import phrase
 from .flows import Action, Transition
 from .labels import Labels
-from .lettering import columns, padded
+from .lettering import columns, cut_columns, padded
 
 if TYPE_CHECKING:
     from .sfc import Chart
 
+LONGEST = 48  # columns of an action or condition
 HALF = 3  # a step's box reaches so many cells to each side of its axis
 
 
@@ -50,7 +51,7 @@ class ChartCells:
         return 1, 3 + columns(condition_text(transition, self.labels)), 1, 1
 
     def arrow(self, jump: Jump) -> tuple[float, float]:
-        return 0, 2 + columns(jump_text(jump))
+        return 0, 2 + columns(str(jump))
 
 
 def action_text(action: Action, labels: Labels) -> str:
@@ -58,19 +59,15 @@ def action_text(action: Action, labels: Labels) -> str:
     operands = [labels.of(action.word, place) for place in range(len(action.word.operands))]
     words = " ".join([action.qualifier, *(f"{label.name}({label.address})" if label.name else label.address for label in operands)])
     when = phrase(action.condition, labels)
-    return f"{words}, when {when}" if when else words
+    return cut_columns(f"{words}, when {when}" if when else words, LONGEST)
 
 
 def condition_text(transition: Transition, labels: Labels) -> str:
-    return phrase(transition.condition, labels) or "always"
+    return cut_columns(phrase(transition.condition, labels) or "always", LONGEST)
 
 
 def join_text(node: Node) -> str:
     return f"join {' '.join(map(str, node.devices))}"
-
-
-def jump_text(jump: Jump) -> str:
-    return "end" if jump.target is None else str(jump.target)
 
 
 def draw(chart: Chart) -> str:
@@ -107,7 +104,7 @@ def _mark(canvas: Canvas, chart: Chart, what: Node | Transition | Jump, x: int, 
     if isinstance(what, Transition):
         canvas.write(y, x - 1, f"─┼─ {condition_text(what, chart.labels)}")
     elif isinstance(what, Jump):
-        canvas.write(y, x, f"▼ {jump_text(what)}")
+        canvas.write(y, x, f"▼ {what}")
     elif what.joins:
         canvas.write(y + 1, x + 2, join_text(what))
     else:

@@ -28,18 +28,30 @@ def _series(items: Sequence[Item], labels: Labels) -> str:
     words: list[str] = []
     for item in items:
         if isinstance(item, Gate):
-            whole = " and ".join(words)
-            whole = f"({whole})" if len(words) > 1 else whole
+            whole = _enclosed(" and ".join(words))
             words = [f"not {whole}" if item.word.mnemonic == "INV" else f"{whole} {'rises' if item.word.mnemonic == 'EU' else 'falls'}"]
         elif isinstance(item, Contact):
             words.append(_contact(item.word, labels))
         elif isinstance(item, Block):
             inner = _series(item.flow.items, labels)
-            words.append(f"({inner})" if " or " in inner and not inner.startswith("(") else inner)
+            words.append(_enclosed(inner) if " or " in inner else inner)
         elif isinstance(item, Parallel):
-            ways = [_series(_items(way), labels) for way in item.ways]
-            words.append(f"({' or '.join(ways)})" if len(items) > 1 else " or ".join(ways))
+            ways = " or ".join(_series(_items(way), labels) for way in item.ways)
+            words.append(_enclosed(ways) if len(items) > 1 else ways)
     return " and ".join(words)
+
+
+def _enclosed(words: str) -> str:
+    """Words in parentheses, if they are several and not enclosed as a whole already."""
+    depth = 0
+    for place, sign in enumerate(words):
+        depth += (sign == "(") - (sign == ")")
+        if depth == 0 and place < len(words) - 1 and words[0] == "(":
+            break
+    else:
+        if words.startswith("("):
+            return words
+    return f"({words})" if " " in words else words
 
 
 def _items(way: Series | Contact | Block) -> Sequence[Item]:

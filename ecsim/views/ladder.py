@@ -246,7 +246,7 @@ class Sheet:
 
     def picture(self, prefix: str) -> str:
         """The root `<svg>` at rest."""
-        parts = [symbols.hatch(prefix), *self._frame(prefix), *(self._draw(strip, prefix) for strip in self.strips)]
+        parts = [symbols.definitions(prefix), *self._frame(prefix), *(self._draw(strip, prefix) for strip in self.strips)]
         units = ", ".join(dict.fromkeys(strip.entry.unit.name for strip in self.strips))
         label = f"Ladder of {units}, {len(self.strips)} network{'s' if len(self.strips) != 1 else ''}"
         size = {"width": self.width, "height": self.height, "viewBox": f"0 0 {s.number(self.width)} {s.number(self.height)}"}

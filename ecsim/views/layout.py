@@ -129,9 +129,16 @@ class Layout:
             return head
         sizes = [self._tail(tail) for tail in tails]
         rows = self._stack(sizes)
-        drop = self.metrics.drop if len(tails) > 1 else 0
-        width = head.width + drop + max(s.width for s in sizes)
+        width = head.width + self._branching(inputs, tails) + max(s.width for s in sizes)
         return Size(width, max(head.up, sizes[0].up), max(head.down, rows[-1] + sizes[-1].down))
+
+    def _branching(self, inputs: Sequence[Item], tails: Sequence[Sequence[Item]]) -> float:
+        """The room for the bar at which the tails of a path part."""
+        if len(tails) < 2:
+            return 0
+        if all(map(_is_output, tails)):
+            return self.metrics.drop
+        return 2 * self.metrics.bar if inputs else self.metrics.bar
 
     def _tail(self, tail: Sequence[Item]) -> Size:
         return self.metrics.output(tail[0].word) if _is_output(tail) else self._path(tail)
@@ -158,14 +165,18 @@ class Layout:
     def place_row(self, flow: Series) -> tuple[Placed, int]:
         """Contacts alone from (0, 0) on, and the net behind the last of them."""
         placed = Placed()
-        pen, _, net = self._place_row(placed, flow.items, 0, 0, 0, RAIL)
+        pen, _, net = self._place_row(placed, flow.items, 0, 0, 0, RAIL, RAIL)
         end = self._row(flow.items).width
         _wire(placed, pen, 0, end, 0, net)
         return placed, net
 
-    def _place_row(self, placed: Placed, items: Sequence[Item], pen: float, x: float, y: float, net: int) -> tuple[float, float, int]:
-        """Inputs from the cell at x on, the wire so far ending at `pen`; the new pen, cell and net."""
-        base = net
+    def _place_row(
+        self, placed: Placed, items: Sequence[Item], pen: float, x: float, y: float, net: int, base: int
+    ) -> tuple[float, float, int]:
+        """Inputs from the cell at x on, the wire so far ending at `pen`; the new pen, cell and net.
+
+        `base` is the net of what a recorded flow is relative to: the left rail, or in a block the wire that it begins at.
+        """
         for item in items:
             size = self._item(item)
             if isinstance(item, Contact | Gate):
@@ -179,7 +190,7 @@ class Layout:
                 placed.symbols.append(Symbol(item, x, y, size, net, after))
                 pen, net = x + size.leave, after
             elif isinstance(item, Block):
-                pen, _, net = self._place_row(placed, item.flow.items, pen, x, y, net)
+                pen, _, net = self._place_row(placed, item.flow.items, pen, x, y, net, net)
             else:
                 pen, net = self._place_parallel(placed, item, pen, x, y, net)
             x += size.width
@@ -194,7 +205,7 @@ class Layout:
         _wire(placed, pen, y, left, y, net)
         ends = []
         for way, row in zip(ways, rows, strict=True):
-            end, _, after = self._place_row(placed, way, left, left, row, net)
+            end, _, after = self._place_row(placed, way, left, left, row, net, net)
             _wire(placed, end, row, right, row, after)
             ends.append(after)
         together = placed.power.net("or", tuple(ends))
@@ -209,7 +220,7 @@ class Layout:
 
     def _place_path(self, placed: Placed, items: Sequence[Item], pen: float, x: float, y: float, net: int, right: float) -> None:
         inputs, tails = _parted(items)
-        pen, x, net = self._place_row(placed, inputs, pen, x, y, net)
+        pen, x, net = self._place_row(placed, inputs, pen, x, y, net, RAIL)
         if len(tails) < 2:
             if tails:
                 self._place_tail(placed, tails[0], pen, x, y, net, right)

@@ -134,7 +134,7 @@ class ChartLengths:
         return BAR + 2, BAR + 6 + condition.width + 6, condition.up + 14, condition.down + 13
 
     def arrow(self, jump: Jump) -> tuple[float, float]:
-        return 8, 16 + 60
+        return 8, 16 + width(str(jump), 13, True)
 
 
 def chip_width(device: Device) -> float:
@@ -332,6 +332,6 @@ class ChartSheet:
         arrow = s.element("path", None, class_="arrow", d=f"M{s.number(x - 6)} {s.number(y + 2)}h12l-6 12z")
         if jump.target is None:
             return (
-                arrow + f'<path class="link dbl" d="M{s.number(x - 10)} {s.number(y + 15)}h20"/>' + s.text(x + 16, y + 14, "end", "el-edge")
+                arrow + f'<path class="link dbl" d="M{s.number(x - 10)} {s.number(y + 15)}h20"/>' + s.text(x + 16, y + 14, str(jump), "el-edge")
             )
-        return arrow + s.text(x + 16, y + 13, str(jump.target), "step-id")
+        return arrow + s.text(x + 16, y + 13, str(jump), "step-id")

@@ -4,14 +4,25 @@ import re
 from collections.abc import Iterable, Mapping
 from functools import cache
 from importlib.resources import files
-from xml.sax.saxutils import escape, quoteattr
 
-NUMBER = "{:.2f}"
+_SPECIAL = re.compile(r'[&<>"\t\n\r]')
+_ENTITIES = {ord("&"): "&amp;", ord("<"): "&lt;", ord(">"): "&gt;"}
+_QUOTED = _ENTITIES | {ord('"'): "&quot;", ord("\t"): "&#9;", ord("\n"): "&#10;", ord("\r"): "&#13;"}
+
+
+def escape(words: str) -> str:
+    """Plain text as the content of an element."""
+    return words.translate(_ENTITIES) if _SPECIAL.search(words) else words
+
+
+def quoted(words: str) -> str:
+    """Plain text as the value of an attribute, in double quotes."""
+    return f'"{words.translate(_QUOTED) if _SPECIAL.search(words) else words}"'
 
 
 def number(value: float) -> str:
     """A length or coordinate, as short as it can be written."""
-    return NUMBER.format(value).rstrip("0").rstrip(".") if value % 1 else str(int(value))
+    return f"{value:.2f}".rstrip("0").rstrip(".") if value % 1 else str(int(value))
 
 
 def element(tag: str, content: str | None = None, /, **attributes: object) -> str:
@@ -20,7 +31,7 @@ def element(tag: str, content: str | None = None, /, **attributes: object) -> st
     for name, value in attributes.items():
         if value is not None:
             name = name.rstrip("_").replace("_", "-")
-            parts.append(f"{name}={quoteattr(number(value) if isinstance(value, (int, float)) else str(value))}")
+            parts.append(f"{name}={quoted(number(value) if isinstance(value, (int, float)) else str(value))}")
     head = " ".join(parts)
     return f"<{head}/>" if content is None else f"<{head}>{content}</{tag}>"
 
@@ -129,7 +140,7 @@ def applied(picture: str, entries: Mapping[str, str], prefix: str = "") -> str:
             if attribute == "text":
                 content, end = escape(value), ""
             else:
-                head = re.sub(rf'\s{re.escape(attribute)}="[^"]*"', "", head, count=1) + f" {attribute}={quoteattr(value)}"
+                head = re.sub(rf'\s{re.escape(attribute)}="[^"]*"', "", head, count=1) + f" {attribute}={quoted(value)}"
         closing = f"</{match['tag']}>" if match["end"] and not end else ""
         return f"<{match['tag']}{head}{end}>{content}{closing}"
 

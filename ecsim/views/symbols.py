@@ -197,18 +197,19 @@ def _value_span(word: Word, place: int, prefix: str) -> str:
 
 def forced_mark(position: int, x: float, y: float, w: float, h: float, prefix: str) -> tuple[str, str]:
     """The hatched frame that lies below an element, and the badge above it; both are shown only while a device of it is forced."""
-    plate = s.element("rect", None, class_="forced-plate", x=x, y=y, width=w, height=h, rx=3, fill=f"url(#{prefix}hatch)")
-    face = s.element("rect", None, class_="forced-face", x=x + 6, y=y + 3, width=w - 12, height=h - 6, rx=1)
-    badge = s.element("rect", None, class_="forced-badge", x=x + w - 17, y=y - 7, width=30, height=15, rx=2)
-    letters = s.text(x + w - 2, y + 4, "F", "forced-text", id=f"{prefix}g{position}")
+    n = s.number
+    plate = f'<rect class="forced-plate" x="{n(x)}" y="{n(y)}" width="{n(w)}" height="{n(h)}" rx="3" fill="url(#{prefix}hatch)"/>'
+    face = f'<rect class="forced-face" x="{n(x + 6)}" y="{n(y + 3)}" width="{n(w - 12)}" height="{n(h - 6)}"/>'
+    badge = f'<rect class="forced-badge" x="{n(x + w - 17)}" y="{n(y - 7)}" width="30" height="15" rx="2"/>'
+    letters = f'<text id="{prefix}g{position}" class="forced-text" x="{n(x + w - 2)}" y="{n(y + 4)}">F</text>'
     return (
-        s.element("g", plate + face, id=f"{prefix}f{position}", class_="forced"),
-        s.element("g", badge + letters, id=f"{prefix}h{position}", class_="forced"),
+        f'<g id="{prefix}f{position}" class="forced">{plate}{face}</g>',
+        f'<g id="{prefix}h{position}" class="forced">{badge}{letters}</g>',
     )
 
 
-def hatch(prefix: str) -> str:
-    """The pattern of what is forced, to stand once in each picture."""
+def definitions(prefix: str) -> str:
+    """What stands once in each picture: the pattern of what is forced."""
     line = '<rect class="hatch-line" width="3" height="7"/>'
     return f'<defs><pattern id="{prefix}hatch" width="7" height="7" patternUnits="userSpaceOnUse" patternTransform="rotate(45)">{line}</pattern></defs>'
 
