@@ -214,6 +214,22 @@ class Memory:
                 found |= {f"{Device(area, number)}{suffix}": int(value) for number, value in sorted(values.forced.items())}
         return found
 
+    def forces(self) -> dict[str, dict[int, int]]:
+        """What is forced, by list: number -> value; `hold` takes it back."""
+        return {name: dict(values.forced) for name, values in self.lists.items() if isinstance(values, Forced)}
+
+    def hold(self, forces: dict[str, dict[int, int]]) -> None:
+        """Force just this, and nothing else."""
+        if forces == self.forces():
+            return
+        for name, values in self.lists.items():
+            if name in forces:
+                self.lists[name] = Forced(values)
+                self.lists[name].forced.update(forces[name])
+            elif isinstance(values, Forced):
+                self.lists[name] = list(values)
+        self.generation += 1
+
     @staticmethod
     def _list(device: Device, kind: DataType) -> str:
         """The name of the list that a device of that type lies in."""
@@ -238,6 +254,6 @@ class Memory:
         return {name: list(values) for name, values in self.lists.items()}
 
     def restore(self, snapshot: dict[str, list]) -> None:
-        """Put a snapshot back; forced devices stay as they are forced."""
+        """Put a snapshot back; what is forced stays."""
         for name, values in snapshot.items():
             self.lists[name][:] = values

@@ -34,6 +34,9 @@ from .project import read_project
 from .values import BOOL
 
 
+LONGEST_NS = 5_000_000_000  # a program that takes longer is stopped (61) even where WDT or a watchdog of 0 would let it run
+
+
 class Overrun(Exception):
     """The user program took longer than the watchdog allows."""
 
@@ -118,7 +121,8 @@ class Plc:
         self._engines: dict[type, CompiledEngine | SteppingEngine] = {}
         self._tracing = self._stepping = False
         self._asked = 0
-        self._spent_ns = self._program_ns = 0
+        self._spent_ns = self._program_ns = 0  # what this scan's program has taken; what it takes without loops
+        self._watchdog_ns = self._limit_ns = self.system.watchdog_ms * 1_000_000
         self._noted_us = 0
         self._fixed_us = 0 if scan_ms is None else max(round(scan_ms * 1000), self.system.constant_scan_ms * 1000)
         self._first = True
@@ -379,6 +383,7 @@ class Plc:
     def _execute(self) -> None:
         """The user program, once. What stops it is state of the machine, not an exception."""
         self._spent_ns = self._program_ns
+        self._limit_ns = self._watchdog_ns or LONGEST_NS
         try:
             if self._run_program():
                 self.stop()
@@ -461,7 +466,7 @@ class Plc:
 
     def _take(self, ns: int) -> None:
         self._spent_ns += ns
-        if self._spent_ns > self.system.watchdog_ms * 1_000_000 > 0:
+        if self._spent_ns > self._limit_ns:
             raise Overrun
 
     def lengthen(self, us: int) -> None:
@@ -474,17 +479,16 @@ class Plc:
             unit.release(claim, self.clock[0])
 
     def watchdog_reset(self) -> None:
-        """WDT: the program's time counts from zero again."""
-        self._spent_ns = 0
+        """WDT: the watchdog's time counts from zero again; the scan has taken what it has taken."""
+        if self._watchdog_ns:
+            self._limit_ns = min(self._spent_ns + self._watchdog_ns, LONGEST_NS)
 
     def _stop_with(self, code: int) -> None:
-        """A serious error: STOP, SM3 and SD3, the ERR lamp."""
+        """A serious execution error: STOP and the ERR lamp; SM20 and SD20 tell of it, SM3 and SD3 belong to system errors (2.4.2)."""
         self._services["FRAMES"].clear()
         self.faults.note(code)
         self.system_error = code
         self.stop()
-        self._tell("system error", True)
-        self._special[1][self.model.registers["system error"]] = code
 
     def _our_bug(self, error: Exception) -> Exception:
         line = 0
@@ -646,19 +650,25 @@ class Plc:
             "clocks": (self.clocks.began, self.clocks.due, self.clocks.slow_due),
             "watched": dict(self.timers.watched),
             "plc": (self.clock[0], self.scans, self.running, self._first, self.system_error, self._asked, self._spent_ns, self._noted_us),
+            "forced": self.memory.forces(),
             "trace": copy.copy(self.trace),
         }
 
     def restore(self, snapshot: dict[str, Any]) -> None:
         """Go back to a snapshot."""
+        self.memory.hold(snapshot["forced"])
+        self._rebind()
         self.memory.restore(snapshot["memory"])
         for name, state in snapshot["units"].items():
             self.units[name].restore(state)
         self.clocks.began, self.clocks.due, self.clocks.slow_due = snapshot["clocks"]
         self.timers.watched = dict(snapshot["watched"])
-        self.clock[0], self.scans, self.running, self._first, self.system_error, self._asked, self._spent_ns, self._noted_us = snapshot["plc"]
-        if snapshot["trace"] is not None and SteppingEngine in self._engines:
-            self._engines[SteppingEngine].trace = snapshot["trace"]
+        self.clock[0], self.scans, self.running, self._first, self.system_error, self._asked, self._spent_ns, self._noted_us = snapshot[
+            "plc"
+        ]
+        trace = snapshot["trace"]
+        if trace is not None and SteppingEngine in self._engines and len(trace.flow) == len(self.program.instructions):
+            self._engines[SteppingEngine].trace = trace
 
     def in_use(self, areas: Iterable[str]) -> list[Device]:
         """The devices of some areas that the program names, in order."""
