@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Protocol
 
 from ..devices import Device
@@ -273,7 +274,9 @@ class ChartLayout:
         for leg, each in legs:
             sub = Sketch()
             again = [
-                goal if isinstance(goal, Jump) or goal not in self.placed or goal is stop or goal is meeting else Jump(goal.devices[0], goal.joins)
+                goal
+                if isinstance(goal, Jump) or goal not in self.placed or goal is stop or goal is meeting
+                else Jump(goal.devices[0], goal.joins)
                 for goal in each
             ]
             height, node = self._follow(sub, 0, leg, again, meeting or stop)
@@ -355,13 +358,14 @@ class ChartLayout:
         if straight:
             order.sort(key=lambda place: subs[place].steps == 0)
         places = [0.0] * len(subs)
-        for before, place in zip(order, order[1:], strict=False):
+        for before, place in pairwise(order):
             pitch = m.pitch if subs[before].steps and subs[place].steps else m.skip
             places[place] = places[before] + max(pitch, subs[before].right + subs[place].left + m.free)
         if straight:
             return places
-        middle = len(subs) // 2
-        shift = places[middle] if len(subs) % 2 else m.snap((places[middle - 1] + places[middle]) / 2)
+        full = [x for sub, x in zip(subs, places, strict=True) if sub.steps] or places
+        middle = len(full) // 2
+        shift = full[middle] if len(full) % 2 else m.snap((full[middle - 1] + full[middle]) / 2)
         return [x - shift for x in places]
 
     def _meeting(self, ways: Sequence[Sequence[Node | Jump]], stop: Node | None) -> Node | None:

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 
 from ..assembler.program import Program
 from ..devices import Device
+from ..engines import Trace
 from ..instructions import TABLE
 from ..memory import Memory
+from ..models import Model
 from .chart_layout import Node
 from .conditions import Condition
 from .flows import Action, Transition
 from .labels import constant_value, figure, operand_type, reader
-from .layout import RAIL
-from .rungs import Word
 from .symbols import counts
 
 if TYPE_CHECKING:
@@ -21,73 +21,76 @@ if TYPE_CHECKING:
 
 
 class Waiting:
-    """One transition: the steps that must be active, and its contacts."""
+    """One transition: the steps that must be active, its contacts and its edges. What it may look like is remembered."""
 
-    def __init__(self, transition: Transition, node: Node, condition: Condition, model):
+    def __init__(self, transition: Transition, node: Node, condition: Condition, model: Model):
         self.position = transition.position
         self.steps = tuple(device.number for device in node.devices)
-        self.condition, self.transition = condition, transition
-        self.contacts = {}
+        self.condition = condition
+        self.contacts = []  # (position, function, readers, constants)
+        self.edges = []  # positions
         for word in condition.words():
-            if TABLE[word.mnemonic].form == "contact":
+            definition = TABLE[word.mnemonic]
+            if definition.form == "contact":
                 readers = [reader(operand, operand_type(word, place), model) for place, operand in enumerate(word.operands)]
                 constants = [constant_value(operand) for operand in word.operands]
-                self.contacts[word.position] = (TABLE[word.mnemonic].function, readers, constants)
-        self.first = condition.words()[0].position if condition.words() else -1
+                self.contacts.append((word.position, definition.function, readers, constants))
+            else:
+                self.edges.append(word.position)
+        self.wired = sorted({wire[4] for wire in condition.placed.wires}) if condition.placed else []
+        self.seen: dict[tuple, dict[str, str]] = {}
 
-    def closed(self, word: Word, memory: Memory, trace) -> bool:
-        """Whether a contact is closed: as the scan saw it, else as the memory has it now."""
-        if trace is not None and trace.closed[word.position] is not None:
-            return bool(trace.closed[word.position])
-        function, readers, constants = self.contacts[word.position]
-        values = [constant if read is None else read(memory) for read, constant in zip(readers, constants, strict=True)]
-        return None not in values and bool(function(*values))
-
-    def put(self, entries: dict[str, str], memory: Memory, trace, running: bool) -> None:
+    def put(self, entries: dict[str, str], memory: Memory, trace: Trace | None, running: bool) -> None:
         """Enter the bar, the plate and the small contacts."""
         steps = memory.lists["S"]
         active = running and all(steps[number] for number in self.steps)
         fired = trace is not None and bool(trace.flow[self.position])
-        key = self.position
-        entries[f"b{key}:class"] = "tbar fires" if fired else "tbar enabled" if active else "tbar"
-        entries[f"p{key}:class"] = "wait-plate on" if active and not fired else "wait-plate"
+        shut = tuple([self._closed(contact, memory, trace) for contact in self.contacts])
+        edges = tuple([trace is not None and bool(trace.flow[position]) for position in self.edges])
+        look = self.seen.get((active, fired, shut, edges))
+        if look is None:
+            look = self.seen[active, fired, shut, edges] = self._look(active, fired, shut, edges)
+        entries.update(look)
+
+    @staticmethod
+    def _closed(contact: tuple, memory: Memory, trace: Trace | None) -> bool:
+        """Whether a contact is closed: as the scan saw it, else as the memory has it now."""
+        position, function, readers, constants = contact
+        if trace is not None and (closed := trace.closed[position]) is not None:
+            return bool(closed)
+        values = [constant if read is None else read(memory) for read, constant in zip(readers, constants, strict=True)]
+        return None not in values and bool(function(*values))
+
+    def _look(self, active: bool, fired: bool, shut: tuple[bool, ...], edges: tuple[bool, ...]) -> dict[str, str]:
+        entries = {
+            f"b{self.position}:class": "tbar fires" if fired else "tbar enabled" if active else "tbar",
+            f"p{self.position}:class": "wait-plate on" if active and not fired else "wait-plate",
+        }
         if self.condition.kind == "single":
-            self._single(entries, memory, trace, active or fired)
+            self._single(entries, active or fired, shut[0], edges)
         elif self.condition.placed:
-            self._ladder(entries, memory, trace, active or fired)
+            self._ladder(entries, active or fired, shut, edges)
+        return entries
 
-    def _single(self, entries: dict[str, str], memory: Memory, trace, power: bool) -> None:
-        word, edge = self.condition.one
-        shut = self.closed(word, memory, trace)
-        passes = power and shut if edge is None else trace is not None and bool(trace.flow[edge.position])
-        entries[f"i{word.position}:class"] = "wire on" if power else "wire"
-        entries[f"o{word.position}:class"] = "wire on" if passes else "wire"
-        # With an edge the symbol is open until the edge comes, whatever the contact does.
-        state = "flow" if passes else "closed" if shut and edge is None else "open"
-        entries[f"e{word.position}:class"] = f"contact {state}"
+    def _single(self, entries: dict[str, str], power: bool, shut: bool, edges: tuple[bool, ...]) -> None:
+        """One contact. With an edge the symbol is open until the edge comes, whatever the contact does."""
+        position = self.contacts[0][0]
+        passes = edges[0] if edges else power and shut
+        entries[f"i{position}:class"] = "wire on" if power else "wire"
+        entries[f"o{position}:class"] = "wire on" if passes else "wire"
+        entries[f"e{position}:class"] = f"contact {'flow' if passes else 'closed' if shut and not edges else 'open'}"
 
-    def _ladder(self, entries: dict[str, str], memory: Memory, trace, power: bool) -> None:
+    def _ladder(self, entries: dict[str, str], power: bool, shut: tuple[bool, ...], edges: tuple[bool, ...]) -> None:
         placed = self.condition.placed
-        nets = [False] * placed.power.count
-        nets[RAIL] = power
-        states = {}
-        for kind, net, sources, position in placed.power.steps:
-            if kind == "contact":
-                nets[net] = nets[sources[0]]
-                states[net] = position
-            elif kind == "gate":
-                nets[net] = nets[sources[0]] and trace is not None and bool(trace.flow[position])
-            else:
-                nets[net] = any(nets[source] for source in sources)
-            if kind == "contact":
-                word = next(symbol.item.word for symbol in placed.symbols if symbol.after == net)
-                shut = self.closed(word, memory, trace)
-                nets[net] = nets[net] and shut
-                entries[f"e{position}:class"] = f"contact {'flow' if nets[net] else 'closed' if shut else 'open'}"
-            elif kind == "gate":
-                entries[f"e{position}:class"] = f"contact {'flow' if nets[net] else 'open'}"
-        for net in {wire[4] for wire in placed.wires}:
-            entries[f"n{self.first}.{net}:class"] = "wire on" if nets[net] else "wire"
+        closed = {contact[0]: state for contact, state in zip(self.contacts, shut, strict=True)}
+        nets = placed.power.solve(power, dict(zip(self.edges, edges, strict=True)), closed)
+        for symbol in placed.symbols:
+            position = symbol.item.word.position
+            state = "flow" if nets[symbol.after] else "closed" if closed.get(position) else "open"
+            entries[f"e{position}:class"] = f"contact {state}"
+        first = self.condition.words()[0].position
+        for net in self.wired:
+            entries[f"n{first}.{net}:class"] = "wire on" if nets[net] else "wire"
 
 
 class ChartLive:

@@ -44,8 +44,8 @@ def _series(items: Sequence[Item], labels: Labels) -> str:
 def _enclosed(words: str) -> str:
     """Words in parentheses, if they are several and not enclosed as a whole already."""
     depth = 0
-    for place, sign in enumerate(words):
-        depth += (sign == "(") - (sign == ")")
+    for place, letter in enumerate(words):
+        depth += (letter == "(") - (letter == ")")
         if depth == 0 and place < len(words) - 1 and words[0] == "(":
             break
     else:

@@ -4,13 +4,14 @@ A rung is laid out from left to right with its outputs against the right rail. E
 the nets follows from what a scan recorded is kept as a short list of operations (`Power`), so that a frame costs little.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Protocol
 
 from .rungs import Block, Contact, Fork, Gate, Item, Output, Parallel, Rung, Series, Word
 
+Recorded = Sequence[bool | None] | Mapping[int, bool]  # by position
 RAIL = 0  # the net of the left rail
 
 
@@ -65,7 +66,7 @@ class Power:
         self.count += 1
         return self.count - 1
 
-    def solve(self, rail: bool, flow: Sequence[bool | None], closed: Sequence[bool | None], first: int = 0) -> list[bool]:
+    def solve(self, rail: bool, flow: Recorded, closed: Recorded, first: int = 0) -> list[bool]:
         """Which nets carry power; `flow` and `closed` begin with the instruction at position `first`."""
         power = [False] * self.count
         if rail:

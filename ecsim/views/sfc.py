@@ -17,7 +17,7 @@ from .flows import Action, Flow, Part, Step, Transition, part_list, parts
 from .labels import Labels
 from .lettering import cut, width
 from .rungs import Word
-from .symbols import counts, group
+from .symbols import counts, group, preset_text, value_room
 
 EDGE, BETWEEN, NATURAL = 12, 40, 960
 STEP, HIGH, ROW, LETTER, TIME = 58, 40, 26, 20, 54
@@ -165,7 +165,7 @@ def action_width(action: Action, labels: Labels, longest: float = LONGEST) -> fl
     """How wide an action is drawn."""
     name, address = action_words(action, labels)
     room = action_letter(action) + 16 + (width(name) + 4 if name else 0) + width(address, 11, True)
-    room += 58 if counts(action.word) else 0
+    room += value_room(action.word) if counts(action.word) else 0
     when = action_condition(action, labels)
     room += width(when, 11) + 10 if when else 0
     return min(longest, max(ACTION, room))
@@ -272,21 +272,22 @@ class ChartSheet:
         name, address = action_words(action, self.labels)
         when = action_condition(action, self.labels)
         right = x + room - 8
-        free = room - letter - 16
+        free, taken = room - letter - 16, 0.0
         parts = [
             s.element("rect", None, class_="frame", x=x, y=y, width=room, height=ROW),
             s.element("rect", None, class_="q", x=x, y=y, width=letter, height=ROW),
             s.text(x + letter / 2, y + 17, action.qualifier, "q-text"),
         ]
         if counts(action.word):
-            preset = s.escape(str(action.word.operands[1]))
+            preset = s.escape(preset_text(action.word))
+            taken = value_room(action.word)
             value = f'<tspan id="{prefix}v{action.word.position}"></tspan><tspan class="dim"> of {preset}</tspan>'
             parts.append(s.element("text", value, class_="el-value end", x=right, y=y + 17))
-            free -= 58
+            free -= taken
         if when:
-            taken = (width(name) + 4 if name else 0) + width(address, 11, True) + 10
-            words = cut(when, max(40, free - taken) + 1, 11)
-            parts.append(s.text(right - (58 if counts(action.word) else 0), y + 17, words, "el-edge end"))
+            named = (width(name) + 4 if name else 0) + width(address, 11, True) + 10
+            words = cut(when, max(40, free - named) + 1, 11)
+            parts.append(s.text(right - taken, y + 17, words, "el-edge end"))
             free -= width(words, 11) + 8
         address = cut(address, free - (width(name) + 4 if name else 0) + 2, 11, True)
         alone = "" if name else " alone"
@@ -332,6 +333,8 @@ class ChartSheet:
         arrow = s.element("path", None, class_="arrow", d=f"M{s.number(x - 6)} {s.number(y + 2)}h12l-6 12z")
         if jump.target is None:
             return (
-                arrow + f'<path class="link dbl" d="M{s.number(x - 10)} {s.number(y + 15)}h20"/>' + s.text(x + 16, y + 14, str(jump), "el-edge")
+                arrow
+                + f'<path class="link dbl" d="M{s.number(x - 10)} {s.number(y + 15)}h20"/>'
+                + s.text(x + 16, y + 14, str(jump), "el-edge")
             )
         return arrow + s.text(x + 16, y + 13, str(jump), "step-id")

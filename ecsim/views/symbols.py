@@ -109,6 +109,18 @@ def counts(word: Word) -> bool:
     return len(specs) == 2 and specs[0].kind in COUNTING
 
 
+def preset_text(word: Word) -> str:
+    """The preset of a counting box as it is shown: its figure, or the device that holds it."""
+    value = constant_value(word.operands[1])
+    return str(word.operands[1]) if value is None else figure(value)
+
+
+def value_room(word: Word) -> float:
+    """The room for "3 of 5" when it is longest."""
+    preset = constant_value(word.operands[1])
+    return width(f"{figure(32767 if preset is None else preset)} of {preset_text(word)}", 12) + 8
+
+
 def box_height(word: Word) -> tuple[float, float]:
     """How far a function box reaches above its wire, and its height."""
     if counts(word):
@@ -161,15 +173,14 @@ def _counting(word: Word, labels: Labels, x: float, y: float, prefix: str, model
     timer = word.operands[0]
     right = x + BOX - PAD
     base = model.timer_base_us(timer.number) / 1000 if isinstance(timer, Device) and timer.area == "T" else 0
-    preset = _value_span(word, 1, prefix)
-    if not isinstance(word.operands[1], Constant):
-        preset += f' <tspan class="el-addr">{s.escape(str(word.operands[1]))}</tspan>'
+    address = "" if isinstance(word.operands[1], Constant) else f' <tspan class="el-addr">{s.escape(preset_text(word))}</tspan>'
+    preset = _value_span(word, 1, prefix) + address
     value = f'<tspan id="{prefix}v{word.position}.0"></tspan><tspan class="dim"> of {preset}</tspan>'
     return "".join(
         [
             s.text(x + PAD, y - 5, word.mnemonic, "op"),
             s.text(right, y - 5, f"{base:g} ms" if base else "", "el-addr end"),
-            beside(labels.of(word, 0), x + PAD, y + 16, 84),
+            beside(labels.of(word, 0), x + PAD, y + 16, BOX - 2 * PAD - value_room(word)),
             s.element("text", value, class_="el-value end", x=right, y=y + 16),
             s.element("rect", None, class_="bar", x=x + PAD, y=y + 25, width=BOX - 2 * PAD, height=5),
             s.element("rect", None, class_="bar-on", id=f"{prefix}r{word.position}", x=x + PAD, y=y + 25, width=0, height=5),

@@ -9,7 +9,7 @@ from ecsim import Plc
 from ecsim.assembler import assemble
 from ecsim.views import svg
 from ecsim.views.ladder import ladder
-from ecsim.views.rungs import Block, Contact, Fork, Gate, Output, Parallel, Series, rungs
+from ecsim.views.rungs import Block, Contact, Gate, Output, Parallel, Series, rungs
 
 from .programs import charts, ladders
 
@@ -306,7 +306,12 @@ def test_an_active_step_lights_its_plate_its_mark_and_its_rail(plc):
     plc["X0"] = 1
     plc.scan(2)
     state = picture.state(plc)
-    assert (state["e2:class"], state["e5:class"], state["e6:class"], state["rail2:class"]) == ("step", "step active", "coil flow", "rail on")
+    assert (state["e2:class"], state["e5:class"], state["e6:class"], state["rail2:class"]) == (
+        "step",
+        "step active",
+        "coil flow",
+        "rail on",
+    )
 
 
 def test_forced_devices_are_marked_wherever_they_stand(plc):
@@ -316,7 +321,14 @@ def test_forced_devices_are_marked_wherever_they_stand(plc):
     plc.force("D5", 7)
     plc.scan()
     state = picture.state(plc)
-    assert {key for key, value in state.items() if value == "forced on"} == {"f1:class", "h1:class", "f2:class", "h2:class", "f3:class", "h3:class"}
+    assert {key for key, value in state.items() if value == "forced on"} == {
+        "f1:class",
+        "h1:class",
+        "f2:class",
+        "h2:class",
+        "f3:class",
+        "h3:class",
+    }
     assert (state["g1:text"], state["g3:text"]) == ("F 1", "F 7")
     plc.unforce()
     assert "forced on" not in picture.state(plc).values()

@@ -4,9 +4,9 @@ from hypothesis import HealthCheck, given, settings
 
 from ecsim import Plc
 from ecsim.assembler import assemble
+from ecsim.views.labels import Labels
 from ecsim.views.ladder import DEEPEST, Lengths, is_drawn, ladder
 from ecsim.views.ladder_text import Cells
-from ecsim.views.labels import Labels
 from ecsim.views.layout import Layout
 from ecsim.views.rungs import Contact, Output, depth, rungs
 

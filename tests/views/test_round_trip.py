@@ -16,9 +16,7 @@ SOME = settings(max_examples=150, suppress_health_check=list(HealthCheck))
 
 def as_written(program):
     """All instructions with operands as written, comments and titles."""
-    return [
-        (i.mnemonic, i.written, i.comment, unit.titles.get(n, "")) for unit in program.units for n, i in enumerate(unit.instructions)
-    ]
+    return [(i.mnemonic, i.written, i.comment, unit.titles.get(n, "")) for unit in program.units for n, i in enumerate(unit.instructions)]
 
 
 def words(tree):

@@ -238,7 +238,12 @@ def test_every_step_and_transition_is_drawn_once(text):
 @given(charts())
 def test_a_nested_flow_has_jumps_only_where_the_program_jumps(text):
     program = assemble(text, "EC20")
-    jumps = [mark.what for sketch, _ in sketches(text) for mark in sketch.marks if isinstance(mark.what, Jump) and mark.what.target and not mark.what.join]
+    jumps = [
+        mark.what
+        for sketch, _ in sketches(text)
+        for mark in sketch.marks
+        if isinstance(mark.what, Jump) and mark.what.target and not mark.what.join
+    ]
     steps = [step for one in chart(program).flows for step in one.steps]
     order = {step.devices[0]: place for place, step in enumerate(steps) if not step.joins}
     back = [
