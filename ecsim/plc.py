@@ -180,6 +180,11 @@ class Plc:
         self._program_ns = program.steps * self.model.instruction_ns
         self._engines = {CompiledEngine: compiled}
         self._names = {name.casefold(): variable.device for name, variable in program.variables.items()}
+        self._with_locals = {
+            unit.name
+            for unit in program.units
+            if any(getattr(operand, "area", None) in self.model.local_areas for i in unit.instructions for operand in i.operands)
+        }
         self._choose_engine()
         return program
 
@@ -446,10 +451,12 @@ class Plc:
 
     def _interrupt(self, routine: str) -> None:
         lists = self.memory.lists
-        frame = [lists[area][:] for area in self.model.local_areas]
-        for area in self.model.local_areas:
+        local = self.model.local_areas if routine in self._with_locals else ()
+        frame = [lists[area][:] for area in local]
+        for area in local:
             self.memory.clear(area)
-        self.timers.advance()
+        if self.timers.watched:
+            self.timers.advance()
         try:
             if self._engine.run(routine):
                 self.stop()
@@ -457,7 +464,7 @@ class Plc:
             self._stop_with(WATCHDOG)
         except Exception as error:
             raise self._our_bug(error) from error
-        for area, values in zip(self.model.local_areas, frame, strict=True):
+        for area, values in zip(local, frame, strict=True):
             lists[area][:] = values
 
     def _spend(self, steps: int) -> None:
