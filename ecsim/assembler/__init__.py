@@ -399,7 +399,9 @@ class _Assembler:
 
 
 def _regions(nodes):
-    for node in nodes:
+    waiting = list(reversed(nodes))  # not by recursion: a wrong program may nest structures without end
+    while waiting:
+        node = waiting.pop()
         if isinstance(node, Region):
             yield node
-            yield from _regions(node.nodes)
+            waiting.extend(reversed(node.nodes))
