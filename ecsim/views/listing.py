@@ -12,7 +12,7 @@ from . import svg as s
 from .labels import Labels
 from .lettering import columns, padded
 
-MNEMONIC, OPERANDS = 6, 24
+MNEMONIC, OPERANDS = 6, 22
 
 
 def listing(part: Program | Unit, program: Program | None = None) -> Listing:
