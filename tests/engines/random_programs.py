@@ -10,7 +10,7 @@ from functools import cache
 from ecsim.assembler import assemble
 from ecsim.errors import ProgramError
 from ecsim.instructions import TABLE
-from ecsim.instructions.signature import OperandSpec
+from ecsim.instructions.signature import OperandSpec, parse_signature
 from ecsim.values import BOOL, REAL, TYPES
 
 STRUCTURE = set("ANB ORB MPS MRD MPP MC MCR STL RET FOR NEXT LBL CJ CFEND CSRET CIRET STOP CALL NOP EU ED INV".split())
@@ -117,7 +117,9 @@ class Maker:
         local = [name for role, name, kind in scope.variables if kind == spec.type.name]
         if local and spec.kind in TYPES and self.often(0.4):
             return f"#{self.chance.choice(local)}"
-        area = self.chance.choice([area for area in spec.order if area in NUMBERS or area in ("const", "text", "S") or area.startswith("Kn")])
+        area = self.chance.choice(
+            [area for area in spec.order if area in NUMBERS or area in ("const", "text", "S") or area.startswith("Kn")]
+        )
         if area == "const":
             return self._constant(spec)
         if area == "text":
@@ -153,7 +155,12 @@ class Maker:
         for _ in range(4):
             text = " ".join([row.mnemonic, *(self.operand(spec, scope) for spec in row.operands)])
             if accepted(self.model, row.mnemonic, text, scope.variables if "#" in text else ()):
-                if scope.in_step and row.mnemonic in ("SET", "OUT") and text.split()[1].startswith("S") and not text.split()[1].startswith("SM"):
+                if (
+                    scope.in_step
+                    and row.mnemonic in ("SET", "OUT")
+                    and text.split()[1].startswith("S")
+                    and not text.split()[1].startswith("SM")
+                ):
                     continue  # a transition is written by the flow
                 return text
         return None
@@ -209,13 +216,10 @@ class Maker:
         return self.pick("EI", "DI", "WDT", "MOV 2 Z0", "MOV -3 Z1", "INC Z2", leave, "STOP" if self.often(0.2) else "NOP")
 
     def call(self, scope: Scope) -> str:
-        from ecsim.assembler import _parameter_spec
-        from ecsim.assembler.program import Variable
-
         routine = self.chance.choice(scope.callable)
         words = []
-        for role, name, kind in routine.parameters:
-            spec = _parameter_spec(Variable(name, None, type=TYPES[kind], role=role))
+        for role, _, kind in routine.parameters:
+            spec = parameter(role, kind)
             for _ in range(6):
                 word = self.operand(spec, scope)
                 if word.startswith("#") or self._fits(spec, word):
@@ -307,7 +311,18 @@ class Maker:
         if self.often(0.1):
             return [f"LBL {label}", *inside, *jump]
         register = f"D{500 + label}"
-        return ["LD SM0", f"MOV 0 {register}", f"LBL {label}", *inside, "LD SM0", f"INC {register}", f"LD< {register} {self.pick(1, 2, 4)}", *jump[:-1], "ANB", jump[-1]]
+        return [
+            "LD SM0",
+            f"MOV 0 {register}",
+            f"LBL {label}",
+            *inside,
+            "LD SM0",
+            f"INC {register}",
+            f"LD< {register} {self.pick(1, 2, 4)}",
+            *jump[:-1],
+            "ANB",
+            jump[-1],
+        ]
 
     # -- step flows ---------------------------------------------------------------------------------------------
 
@@ -316,7 +331,7 @@ class Maker:
         scope = Scope(in_step=True, bus=True)
         free = iter(range(20 + 40 * number, 60 + 40 * number))
         lines: list[str] = []
-        sources, initial = [f"S{number}"], f"S{number}"
+        initial = f"S{number}"
         first = [*self.step(initial, scope)]
         known = [initial]
         pending = first
@@ -378,7 +393,9 @@ class Maker:
     def routine(self, number: int, callable_: list[Routine]) -> tuple[Routine, list[str]]:
         kinds = list(TYPES)
         roles = ("INPUT", "INPUT", "OUTPUT", "IN_OUT", "TEMP")
-        variables = tuple((self.chance.choice(roles), f"P{number}_{place}", self.chance.choice(kinds)) for place in range(self.pick(0, 1, 2, 4)))
+        variables = tuple(
+            (self.chance.choice(roles), f"P{number}_{place}", self.chance.choice(kinds)) for place in range(self.pick(0, 1, 2, 4))
+        )
         scope = Scope(kind="SUBROUTINE", variables=variables, callable=callable_)
         declared = [f"VAR_{role} {name} : {kind}" for role, name, kind in variables]
         name = f"SBR_{number}"
@@ -403,11 +420,22 @@ class Maker:
             parts.append(self.interrupt(number, event))
         self.labels = 0
         scope = Scope(callable=routines)
-        main = ["LD SM1", "EI", "SET SM40", "SET SM41", "SET SM42", "SET SM66", "SET SM65", "SET SM67", "MOV 3 SD66", "MOV 25 SD67"] if events else []
+        main = (
+            ["LD SM1", "EI", "SET SM40", "SET SM41", "SET SM42", "SET SM66", "SET SM65", "SET SM67", "MOV 3 SD66", "MOV 25 SD67"]
+            if events
+            else []
+        )
         for number in range(self.pick(0, 0, 1, 2)):
             main += [f"LD {self.pick('SM1', 'SM1', 'X0', 'M1')}", f"SET S{number}", *self.body(scope, self.pick(0, 1)), *self.flow(number)]
         main += self.body(scope, self.size)
         return "\n".join(["PROGRAM MAIN", *main, "END_PROGRAM", *(line for part in parts for line in part)])
+
+
+@cache
+def parameter(role: str, kind: str) -> OperandSpec:
+    """What may stand for a variable of a subroutine at the call (table 3-3)."""
+    text = {"INPUT": f"P:{kind}", "OUTPUT": f"-> P:{kind}", "IN_OUT": f"P:{kind} -> P"}[role]
+    return parse_signature(text)[0][0]
 
 
 @cache

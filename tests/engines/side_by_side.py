@@ -104,7 +104,9 @@ def disturb(machines: Machines, chance) -> None:
     for number in chance.sample(range(8), chance.randint(0, 4)):
         level = chance.randint(0, 1)
         machines.each(lambda plc, name=f"X{number}", level=level: plc.__setitem__(name, level))
-    for name in chance.sample(("Z0", "Z1", "Z2", "Z3", "D0", "D5", "D9", "T0", "C1", "C200", "S0", "S20", "M1", "T210:BOOL"), chance.randint(0, 3)):
+    for name in chance.sample(
+        ("Z0", "Z1", "Z2", "Z3", "D0", "D5", "D9", "T0", "C1", "C200", "S0", "S20", "M1", "T210:BOOL"), chance.randint(0, 3)
+    ):
         value = chance.randint(0, 1) if name[0] in "SM" or name.endswith("BOOL") else chance.choice(EDGES)
         machines.each(lambda plc, name=name, value=value: plc.__setitem__(name, value))
     if chance.random() < 0.04:
