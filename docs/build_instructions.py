@@ -29,7 +29,7 @@ def chosen_examples() -> dict[str, dict[str, Any]]:
     candidates: dict[str, list[dict[str, Any]]] = {}
     for path in sorted(CASES.glob("*.json")):
         for case in load_cases(path):
-            mnemonic = case["mnemonic"].split()[0]
+            mnemonic = case["mnemonic"].partition(" ")[0]  # "SET Sxx": SET in a step
             if mnemonic in TABLE and not case.get("compile_error"):
                 candidates.setdefault(mnemonic, []).append(case)
     found = {}
@@ -43,7 +43,7 @@ def chosen_examples() -> dict[str, dict[str, Any]]:
 def _rank(case: dict[str, Any]) -> tuple:
     """Cases of the instruction's own section and worked examples first; then cases without an error, on more models, and short ones."""
     steps = case["steps"]
-    own = case["section"] == TABLE[case["mnemonic"].split()[0]].section
+    own = case["section"] == TABLE[case["mnemonic"].partition(" ")[0]].section
     size = len(case["il"].split("\n")) + sum(1 + len(step.get("set", ())) + len(step.get("expect", ())) for step in steps)
     fails = any(step.get("error") for step in steps)
     shows = any(value for step in steps for value in step.get("expect", {}).values()) and not any("expect_range" in step for step in steps)

@@ -327,12 +327,17 @@ def _story(case: dict[str, Any]) -> Iterable[str]:
             [{"run": "STOP to RUN", "stop": "RUN to STOP", "power_cycle": "power off and on"}[step["action"]]] if "action" in step else []
         )
         before += [_settings(step["set"])] if step.get("set") else []
-        before += [f"{_settings(step[signal])} ({signal})" for signal in ("pulses", "quadrature") if signal in step]
+        before += [f"{count} pulse{'s' if count != 1 else ''} on {name}" for name, count in step.get("pulses", {}).items()]
+        before += [_phases(**step["quadrature"])] if "quadrature" in step else []
         time = f"after {step['ms']:g} ms" if "ms" in step else _scans(step.get("scans", 0))
         after = [_settings(step["expect"])] if step.get("expect") else []
         after += [f"{name} from {limits['min']} to {limits['max']}" for name, limits in step.get("expect_range", {}).items()]
         after += [f"error {step['error']} in SD20" if step["error"] else "no error in SD20"] if "error" in step else []
         yield f"{'; '.join([*before, time])}: {', '.join(after)}" if after else "; ".join([*before, time])
+
+
+def _phases(A: str, B: str, count: int, direction: int) -> str:
+    return f"{count} cycle{'s' if count != 1 else ''} on {A} and {B}, {A if direction > 0 else B} first"
 
 
 def _scans(count: int) -> str:
