@@ -194,6 +194,11 @@ class Memory:
         values[device.number] = value = bool(value) if kind is BOOL else signed16(value)
         values.forced[device.number] = value
 
+    @property
+    def forces_words(self) -> bool:
+        """Whether a register is forced."""
+        return any(isinstance(part, Forced) and not isinstance(part[0], bool) for part in self.lists.values())
+
     def unforce(self, device: Device, kind: DataType) -> None:
         """Release a forced device; it keeps the value until the program or the input writes it."""
         name = self._list(device, kind)

@@ -157,11 +157,9 @@ class Access:
             lines.append(f"C[{number}] = 0")
         return lines
 
-    def copy(self, kind: DataType, source: Operand, target: Operand) -> list[str]:
-        """The statement that moves a pair of registers as it stands, none where source or target is something else."""
-        devices = isinstance(source, Device) and isinstance(target, Device) and source.index is None and target.index is None
-        if not devices or kind.words != 2 or {source.area, target.area} & {"T", "C"}:
-            return []
+    @staticmethod
+    def copy(source: Device, target: Device) -> list[str]:
+        """The statement that moves a pair of registers as it stands."""
         to, of = f"{target.area}[{{}}]".format, f"{source.area}[{{}}]".format
         return [f"{to(target.number)}, {to(target.number + 1)} = {of(source.number)}, {of(source.number + 1)}"]
 

@@ -64,8 +64,8 @@ class Block:
 class Compiler(Writer):
     """Writes the source of one program."""
 
-    def __init__(self, program: Program):
-        super().__init__(program)
+    def __init__(self, program: Program, forwarding: bool = True):
+        super().__init__(program, forwarding)
         self.out: list[str] = []
         self.functions = 0
         self.globals["LOOPS"] = []
@@ -184,7 +184,20 @@ class _Rung:
             self.instruction = instruction
             following = instructions[place + 1] if place + 1 < len(instructions) else None
             self.again = following is not None and following.mnemonic not in ("MRD", "MPP")
-            self._one(instruction)
+            if instruction.definition.form in ("value", "command") and not instruction.definition.told:
+                self._value(instruction, following)
+            else:
+                self.c.known.forget()
+                self._one(instruction)
+                self.c.known.forget()
+
+    def _value(self, instruction: Instruction, following: Instruction | None) -> None:
+        flow = self._used()
+        if self.last != (flow, len(self.lines)) or instruction.pulse >= 0:
+            self.c.known.forget()
+        self._when(self.c.value(instruction, telling=following is None or not self.c.overrides(following, instruction)))
+        if instruction.pulse >= 0:
+            self.c.known.forget()
 
     def _one(self, instruction: Instruction) -> None:
         form, definition = instruction.definition.form, instruction.definition
@@ -192,8 +205,6 @@ class _Rung:
             self._contact(instruction)
         elif definition.told:
             self.lines += self.c.value(instruction, self._told().text)
-        elif form in ("value", "command"):
-            self._when(self.c.value(instruction))
         elif form == "always":
             self._always(instruction)
         else:
@@ -454,21 +465,29 @@ class CompiledEngine:
 
     def __init__(self, program: Program, memory: Memory, services: dict[str, object]):
         self.program, self.memory, self.services = program, memory, services
-        compiler = Compiler(program)
-        self.source = compiler.source()
         self.filename = f"<ecsim {program.model.name} {id(self):x}>"
+        self.forwarding: bool | None = None
+        self.bind()
+
+    def _compile(self, forwarding: bool) -> None:
+        """Generate the code; `forwarding` where a value that was written to a register is the one that is read there."""
+        compiler = Compiler(self.program, forwarding)
+        self.forwarding = forwarding
+        self.source = compiler.source()
         self.code = compile(self.source, self.filename, "exec")
         self.globals = compiler.globals
         self.names = compiler.unit_names
         # The text is kept for tracebacks, and given up with the engine.
         linecache.cache[self.filename] = (len(self.source), None, self.source.splitlines(keepends=True), self.filename)
-        self.bind()
 
     def __del__(self):
         linecache.cache.pop(self.filename, None)
 
     def bind(self) -> None:
         """Tie the code to the memory's present lists."""
+        forwarding = not self.memory.forces_words
+        if forwarding is not self.forwarding:
+            self._compile(forwarding)
         namespace = {**self.services, **self.globals, **self.memory.lists}
         exec(self.code, namespace)  # the code holds numbers and names of ours only: see Compiler
         self.generation = self.memory.generation

@@ -15,8 +15,9 @@ from ..assembler.program import Instruction, Network, Program, Region, Unit, Var
 from ..devices import Bits, Constant, Device, Operand
 from ..errors import OPERAND
 from ..instructions.signature import OperandSpec
-from ..values import BOOL, REAL, REAL_LIMIT, join, words_from_real
+from ..values import BOOL, DINT, REAL, REAL_LIMIT, DataType, join, words_from_real
 from .access import ROUNDED, Access
+from .known import Known
 from .template import Template, template
 
 INDENT = "    "
@@ -38,9 +39,11 @@ def regions(nodes: list[Network | Region]) -> Iterator[Region]:
 class Writer:
     """Source for single instructions of one program."""
 
-    def __init__(self, program: Program):
+    def __init__(self, program: Program, forwarding: bool = False):
         self.program, self.model = program, program.model
         self.access = Access(self.model)
+        self.known = Known(forwarding)
+        self.telling = True
         self.globals: dict[str, object] = {}
         self.can_fault = any(self._may_fault(i) for i in program.instructions)
         self.fault_flag = "{}[{}]".format(*self.model.flag("fault"))
@@ -104,18 +107,29 @@ class Writer:
                 fields[name] = self._special(instruction, word, flow)
                 continue
             spec, operand = operands[word]
-            text = self._load(instruction, spec, operand)
+            kind = spec.type.stored if definition.as_stored else spec.type
+            if spec.span is None and spec.plain and definition.form != "contact" and Known.pair(kind, operand):
+                text = self._pair(kind, operand, lines)
+            else:
+                text = self._load(instruction, spec, operand)
             checked = self._checked(spec, operand)
-            if checked or (pattern.uses.get(name, 1) > 1 and not self._simple(text)):
+            if not text.isidentifier() and (checked or (pattern.uses.get(name, 1) > 1 and not self._simple(text))):
                 lines.append(f"a_{name} = {text}")
-                text = f"a_{name}"
-            elif spec.type is REAL and spec.span is None and definition.form != "contact" and not definition.as_stored:
-                lines += self.access.fetch(REAL, operand, f"a_{name}")
                 text = f"a_{name}"
             if checked:
                 lines.append(self._range_check(spec, text, flow if definition.after else ""))
             fields[name] = text
         return lines, fields
+
+    def _pair(self, kind: DataType, device: Device, lines: list[str]) -> str:
+        """The name of a register pair's value, with the statements that fetch it if it is not known."""
+        name = self.known.find(kind, device)
+        if name is None:
+            name = self.known.new()
+            lines += [f"{name} = {ROUNDED}"] if kind is REAL and self.known.in_scratch(device) else self.access.fetch(kind, device, name)
+            self.known.read(kind, device)
+            self.known.keep(kind, device, name)
+        return name
 
     def _special(self, instruction: Instruction, word: str, flow: str) -> str:
         """What a function gets that is no operand."""
@@ -200,8 +214,27 @@ class Writer:
 
     # -- values -------------------------------------------------------------------------------------------------
 
-    def value(self, instruction: Instruction, flow: str = "True") -> list[str]:
-        """The statements of an instruction that gives values; `flow` is the flow for one that is told of it."""
+    def value(self, instruction: Instruction, flow: str = "True", telling: bool = True) -> list[str]:
+        """The statements of an instruction that gives values; `flow` is the flow for one that is told of it.
+
+        Not `telling`, they leave the flags that the result tells to the instruction that follows.
+        """
+        self.telling = telling
+        lines = self._value(instruction, flow)
+        if instruction.definition.form == "command" or self._may_fault(instruction):
+            self.known.forget()
+        return lines
+
+    def overrides(self, second: Instruction, first: Instruction) -> bool:
+        """Whether an instruction sets all flags of the result of the one before it, whatever happens, without having looked at them."""
+        flags, derived = first.definition.flags, second.definition.flags
+        told = second.definition.told or second.pulse >= 0 or first.pulse >= 0 or second.definition.given or first.definition.given
+        if not flags or told or second.definition.form != "value" or not set(flags) <= set(derived) or self._may_fault(second):
+            return False
+        special = (self.model.special_bits, self.model.special_words)
+        return not any(getattr(operand, "area", "") in special for operand in second.operands)
+
+    def _value(self, instruction: Instruction, flow: str) -> list[str]:
         definition = instruction.definition
         if definition.claims:
             return self._claimed(instruction, flow)
@@ -223,6 +256,8 @@ class Writer:
         """Load, compute, store, without what an execution error does."""
         definition = instruction.definition
         pattern = template(definition.function, "value")
+        if pattern.passes and definition.as_stored and all(map(self._is_pair, definition.operands, instruction.operands)):
+            return self._copy(*instruction.operands)
         lines, fields = self._loads(instruction, pattern, flow)
         if pattern.text is None or definition.form == "command":
             result = f"{self._function(instruction)}({', '.join(fields.values())})"
@@ -234,46 +269,75 @@ class Writer:
         if len(targets) == 1 and not definition.given:
             lines += self._one_result(instruction, *targets[0], result, pattern)
         else:
-            names = [f"v{place}" for place in range(len(targets))] + [f"f_{word}" for word in definition.given]
+            values = [self.known.new() if self._is_pair(*target) else f"v{place}" for place, target in enumerate(targets)]
+            names = values + [f"f_{word}" for word in definition.given]
             lines.append(f"{', '.join(names)}{',' if len(names) == 1 else ''} = {result}" if names else result)
             # What is read too can be reached; what is not goes first, so that an error leaves all destinations as they are.
-            for place, (spec, operand) in sorted(enumerate(targets), key=lambda target: target[1][0].read):
-                lines += self._store_result(instruction, spec, operand, f"v{place}")
+            for name, (spec, operand) in sorted(zip(values, targets, strict=True), key=lambda stored: stored[1][0].read):
+                lines += self._store_result(instruction, spec, operand, name)
             lines += [f"{self._special(instruction, word, flow)} = f_{word}" for word in definition.given]
         if definition.after and "state" not in definition.given:
             lines.append(f"E[{instruction.slot}] = {flow}")
         return lines
 
     def _one_result(self, instruction: Instruction, spec: OperandSpec, operand, result: str, pattern: Template) -> list[str]:
-        if instruction.definition.as_stored and not instruction.definition.flags:
-            copied = self.access.copy(spec.type, instruction.operands[0], operand) if pattern.passes else []
-            return copied or self._store_result(instruction, spec, operand, result)
-        return [f"v = {result}", *self._store_result(instruction, spec, operand, "v")]
+        if instruction.definition.as_stored and not instruction.definition.flags and not self._is_pair(spec, operand):
+            return self._store_result(instruction, spec, operand, result)
+        name = self.known.new() if self._is_pair(spec, operand) else "v"
+        return [f"{name} = {result}", *self._store_result(instruction, spec, operand, name)]
+
+    def _copy(self, source: Device, target: Device) -> list[str]:
+        """A pair of registers moved as it stands."""
+        names = {kind: self.known.find(kind, source) for kind in (DINT, REAL)}
+        self.known.spoil(target, 2)
+        for kind, name in names.items():
+            if name is not None:
+                self.known.keep(kind, target, name)
+        return self.access.copy(source, target)
+
+    @staticmethod
+    def _is_pair(spec: OperandSpec, operand: Operand) -> bool:
+        return spec.span is None and Known.pair(spec.type, operand)
 
     def _store_result(self, instruction: Instruction, spec: OperandSpec, operand, name: str) -> list[str]:
         as_stored = instruction.definition.as_stored
         kind = spec.type.stored if as_stored else spec.type
+        self.known.spoil(operand, max(1, kind.words) if spec.span is None else None)
         if spec.span is not None:
             if kind.words and kind is not REAL and not as_stored:
                 name = f"wrapped{kind.bits}({name})"
             return self.access.store_span(kind, operand, name, instruction.definition.resets, self._count(instruction, spec))
         if kind is BOOL:
             return self.access.store(kind, operand, name)
+        if kind is REAL:
+            return self._store_real(instruction, operand, name)
         lines = self._flags(instruction, kind, name)
-        if kind is REAL and lines:  # the flags tell about the single that is stored
-            plain = isinstance(operand, Device) and operand.index is None
-            return [*self.access.round(name), *lines, *self.access.store(kind, operand, ROUNDED if plain else name)]
-        if kind is not REAL and not as_stored:
+        if not as_stored:
             half, full = 1 << kind.bits - 1, (1 << kind.bits) - 1
             if lines and lines[-1].startswith(INDENT):  # the flags have found the result to be too large already
                 lines.append(f"{INDENT}{name} = ({name} + {half} & {full}) - {half}")
             else:
                 lines.append(f"if not {-half} <= {name} <= {half - 1}: {name} = ({name} + {half} & {full}) - {half}")
+        if Known.pair(kind, operand):
+            self.known.keep(kind.stored, operand, name)
         return lines + self.access.store(kind, operand, name)
+
+    def _store_real(self, instruction: Instruction, operand, name: str) -> list[str]:
+        """A REAL is rounded when it is stored; flags tell about the single that is stored."""
+        plain = Known.pair(REAL, operand)
+        flags = self._flags(instruction, REAL, name)
+        if plain:
+            self.known.read(REAL, operand)
+        if not flags:
+            return self.access.store(REAL, operand, name)
+        if plain:
+            self.known.keep(REAL, operand, name)
+        return [*self.access.round(name), *flags, *self.access.store(REAL, operand, ROUNDED if plain else name)]
 
     def _flags(self, instruction: Instruction, kind, name: str) -> list[str]:
         """What the exact result tells: zero, above the range (carry), below it (borrow)."""
-        flags = [flag for flag in instruction.definition.flags if flag not in instruction.definition.given]
+        given = instruction.definition.given if self.telling else instruction.definition.flags
+        flags = [flag for flag in instruction.definition.flags if flag not in given]
         relay = {flag: "{}[{}]".format(*self.model.flag(flag)) for flag in flags}
         lines = [f"{relay['zero']} = {name} == 0"] if "zero" in relay else []
         out = [

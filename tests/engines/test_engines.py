@@ -2,6 +2,7 @@
 
 import pytest
 
+from ecsim.errors import ProgramError
 from ecsim.plc import Plc, SystemBlock
 
 
@@ -116,7 +117,6 @@ def test_the_scan_times_go_on_after_a_step_back(run):
     assert plc["SD30"] == 1
 
 
-def test_devices_in_a_row_that_leave_their_area_are_error_65(run):
-    plc = run("LD SM0\nABS X377 M10 D100")  # it reads X377 and the two behind it
-    plc.scan()
-    assert plc["SD20"] == 65
+def test_devices_in_a_row_that_leave_their_area_are_refused(run):
+    with pytest.raises(ProgramError, match="'X377' reaches beyond X377"):
+        run("LD SM0\nABS X377 M10 D100")  # it reads X377 and the two behind it
