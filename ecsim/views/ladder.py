@@ -23,6 +23,7 @@ from .rungs import Gate, Output, Rung, Word, depth, instruction_list, rung, unit
 MARGIN, RAIL_STEP, RIGHT_RAIL, EDGE, PLATE = 64, 22, 944, 16, 38
 TITLE_LINE, BUS_ROW, HEAD = 18, 52, 34
 NATURAL, NARROW, WITH_NOTES, NOTES = 960, 700, 1100, 282
+CELLS = (112, 104, 96, 88, 80)  # a contact's cell: the widest where there is room, a narrower one where a panel then needs no scrolling
 DEEPEST = 80  # a tree nested deeper is listed instead of drawn
 
 
@@ -124,10 +125,14 @@ class Lengths:
     labels: Labels
     cell: float = 112
     lead: float = 12
-    bar: float = 20
     drop: float = 28
     row: float = 64
-    gap: float = 4
+    gap: float = 6
+
+    @property
+    def bar(self) -> float:
+        """From the bar of a parallel to the next cell."""
+        return 20 if self.cell == CELLS[0] else 14
 
     def names(self, word: Word) -> float:
         """The room above a contact or coil: for name and address, or for the address alone."""
@@ -142,7 +147,8 @@ class Lengths:
         return Size(self.cell, self.names(word), 14, self.cell / 2 - 8, self.cell / 2 + 8)
 
     def gate(self, word: Word) -> Size:
-        return Size(self.cell, 32, 14, self.cell / 2 - 8, self.cell / 2 + 8)
+        cell = self.cell if self.cell == CELLS[0] else 72
+        return Size(cell, 32, 14, cell / 2 - 8, cell / 2 + 8)
 
     def output(self, word: Word) -> Size:
         if word.mnemonic in COILS:
@@ -173,15 +179,15 @@ class Sheet:
         asked = asked or NATURAL
         self.model: Model = ladder.model
         self.program = ladder.program
-        self.cell = 104 if asked < NARROW else 112
-        self.layouts = {id(e.labels): Layout(Lengths(e.labels, self.cell)) for e in ladder.entries}
         with_notes = asked >= WITH_NOTES
-        needed = [
-            MARGIN + RAIL_STEP * len(railed(e.rung)) + self.layouts[id(e.labels)].size(e.rung).width
-            for e in ladder.entries
-            if is_drawn(e.rung)
-        ]
-        self.right = max([min(RIGHT_RAIL, asked - NOTES) if with_notes else asked - EDGE, *needed])
+        entries = [entry for entry in ladder.entries if is_drawn(entry.rung)]
+        for cell in CELLS if asked < NARROW else CELLS[:1]:
+            needed = self._lay_out(ladder, cell, entries)
+            if needed <= asked - EDGE:
+                break
+        else:
+            needed = self._lay_out(ladder, CELLS[1] if asked < NARROW else CELLS[0], entries)
+        self.right = max(min(RIGHT_RAIL, asked - NOTES) if with_notes else asked - EDGE, needed)
         self.notes = self.right + 24 if with_notes else 0
         self.width = max(asked, self.right + (NOTES if with_notes else EDGE))
         self.strips: list[Strip] = []
@@ -190,6 +196,13 @@ class Sheet:
             self.strips.append(self._strip(number, entry, top + (HEAD if entry.heading else 0)))
             top = self.strips[-1].top + self.strips[-1].height
         self.height = top + 8
+
+    def _lay_out(self, ladder: Ladder, cell: float, entries: list[Entry]) -> float:
+        """Take a width of cell; where the right rail must then be."""
+        self.layouts = {id(entry.labels): Layout(Lengths(entry.labels, cell)) for entry in ladder.entries}
+        left = (MARGIN + RAIL_STEP * len(railed(entry.rung)) for entry in entries)
+        sizes = (self.layouts[id(entry.labels)].size(entry.rung) for entry in entries)
+        return max((x + size.width for x, size in zip(left, sizes, strict=True)), default=0)
 
     def _strip(self, number: int, entry: Entry, top: float) -> Strip:
         rung, words = entry.rung, entry.rung.words
@@ -318,7 +331,7 @@ class Sheet:
             class_, content = "contact open", symbols.compare(word, labels, x + symbol.size.enter, y, box, prefix)
             around = x + symbol.size.enter - 9, y - 36, box + 18, 72
         else:
-            class_, content = "contact open", symbols.contact(word, labels, middle, y, self.cell - 6)
+            class_, content = "contact open", symbols.contact(word, labels, middle, y, symbol.size.width - 6)
         if symbols.forcible(word):
             plate, badge = symbols.forced_mark(word.position, *around, prefix)
             content = plate + content + badge

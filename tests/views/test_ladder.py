@@ -168,7 +168,7 @@ def elements(picture):
     return dict(found)
 
 
-@settings(max_examples=25, suppress_health_check=list(HealthCheck))
+@settings(max_examples=10, suppress_health_check=list(HealthCheck))
 @given(ladders() | charts())
 def test_the_state_speaks_of_elements_that_the_picture_has(text):
     plc = Plc("EC20", input_filter_ms=0)

@@ -12,7 +12,7 @@ from ecsim.views.rungs import Contact, Output, depth, rungs
 
 from .programs import charts, ladders
 
-SOME = settings(max_examples=60, suppress_health_check=list(HealthCheck))
+SOME = settings(max_examples=40, suppress_health_check=list(HealthCheck))
 LENGTHS = {"px": Lengths, "cells": Cells}
 
 

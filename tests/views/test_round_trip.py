@@ -11,7 +11,7 @@ from ecsim.views.sfc import chart
 
 from .programs import VARIABLES, charts, ladders
 
-SOME = settings(max_examples=150, suppress_health_check=list(HealthCheck))
+SOME = settings(max_examples=80, suppress_health_check=list(HealthCheck))
 
 
 def as_written(program):

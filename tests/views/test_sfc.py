@@ -18,7 +18,7 @@ from ecsim.views.sfc import ChartLengths, chart
 
 from .programs import charts, ladders
 
-SOME = settings(max_examples=60, suppress_health_check=list(HealthCheck))
+SOME = settings(max_examples=40, suppress_health_check=list(HealthCheck))
 
 SIMPLE = """
 // wait
