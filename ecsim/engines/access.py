@@ -8,10 +8,11 @@ from ..devices import Bits, Constant, Device, Operand, Text
 from ..errors import OPERAND, RANGE, Fault
 from ..memory import Memory
 from ..models import Model
-from ..values import BOOL, REAL, DataType, join, real_from_words, signed16, single, split, words_from_real
+from ..values import BOOL, REAL, WORD, DataType, join, real_from_words, signed16, single, split, words_from_real
 
 # REAL[0] and HALF[0], HALF[1] are one piece of scratch memory, seen as a single and as two registers: the fastest way between the two.
 ROUNDED = "REAL[0]"
+FEW = ("2", "3", "4")  # spans of so many pairs are written one by one
 _HIGH, _LOW = ("HALF[1]", "HALF[0]") if sys.byteorder == "little" else ("HALF[0]", "HALF[1]")
 
 
@@ -200,6 +201,10 @@ class Access:
         values = self.bits(operand.area) if kind is BOOL else operand.area
         if self._plain_block(kind, operand, count):
             return [f"{values}[{number}:{operand.number + int(count)}] = {text}"]
+        if kind.words == 2 and self._plain_block(WORD, operand, f"{2 * int(count)}" if count in FEW else ""):
+            pairs = [(f"pair_{place}", Device(operand.area, operand.number + 2 * place)) for place in range(int(count))]
+            names = ", ".join(name for name, _ in pairs)
+            return [f"{names} = {text}", *(line for name, device in pairs for line in self.store(kind, device, name))]
         guard = {self.model.special_bits: "READ_ONLY_BITS", self.model.special_words: "READ_ONLY_WORDS"}.get(operand.area, "()")
         if kind.words == 2 and operand.area not in ("T", "C"):
             return [f"put_span_{'real' if kind is REAL else 'dint'}({values}, {number}, {text}, {high}, {guard})"]

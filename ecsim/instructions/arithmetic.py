@@ -28,34 +28,32 @@ def mul(s1, s2):
     return s1 * s2
 
 
-def _divided(dividend: int, divisor: int) -> list[int]:
-    """Quotient, cut toward zero, and remainder, which has the sign of the dividend."""
+def _divided(dividend: int, divisor: int, least: int) -> tuple[list[int], bool]:
+    """Quotient, cut toward zero, and remainder, which has the sign of the dividend; whether the quotient did not fit and was wrapped."""
     if divisor == 0:
         raise Fault(DIVISION)
-    quotient = abs(dividend) // abs(divisor)
-    if (dividend < 0) is not (divisor < 0):
-        quotient = -quotient
-    return [quotient, dividend - quotient * divisor]
+    if divisor == -1 and dividend == least:
+        return [least, 0], True
+    quotient = int(dividend / divisor)  # exact: a float has room for more than 32 bits
+    return [quotient, dividend - quotient * divisor], False
 
 
-@value("DIV", "S1:INT S2:INT -> D:INT*2 carry", steps=7, section="6.3.4", faults=(DIVISION,))
+@value("DIV", "S1:INT S2:INT -> D:INT*2 carry", steps=7, section="6.3.4", as_stored=True, faults=(DIVISION,))
 def div(s1, s2):
     """D = S1 / S2 cut to a whole number, and the element after D = the remainder, which has the sign of S1.
 
     The one quotient that does not fit, -32768 / -1, wraps and sets carry.
     """
-    result = _divided(s1, s2)
-    return result, result[0] > INT.high
+    return _divided(s1, s2, INT.low)
 
 
-@value("DDIV", "S1:DINT S2:DINT -> D:DINT*2 carry", steps=10, section="6.3.13", faults=(DIVISION,))
+@value("DDIV", "S1:DINT S2:DINT -> D:DINT*2 carry", steps=10, section="6.3.13", as_stored=True, faults=(DIVISION,))
 def ddiv(s1, s2):
     """D = S1 / S2 cut to a whole number, and the element after D = the remainder, which has the sign of S1.
 
     The one quotient that does not fit, -2147483648 / -1, wraps and sets carry.
     """
-    result = _divided(s1, s2)
-    return result, result[0] > DINT.high
+    return _divided(s1, s2, DINT.low)
 
 
 @value("SQT", "S:INT=0..32767 -> D:INT borrow", steps=5, flags=("zero",), section="6.3.5")
