@@ -16,24 +16,16 @@ IN_A_STEP = {"SET": "SET Sxx", "OUT": "OUT Sxx", "RST": "RST Sxx"}  # rows of th
 
 # Where TABLE deliberately says something else than the copy of the facts: (mnemonic, column) -> (what TABLE says, why).
 # Each stands in docs/decisions.md too, which a test below checks.
+FLAGS = "the rows of 6.17 print all three flags everywhere; neither the text nor appendix 9 names one"
 DIFFERENT = {
     ("DMOV", "S devices"): (
         sorted("const KnX KnY KnM KnS KnLM KnSM D SD C V".split()),
         "the printed row is two rows run together: table 3-3 and 6.1.11 give no 32-bit number to T and Z",
     ),
-    **{
-        ("DXCH", f"{name} devices"): (
-            sorted("KnY KnM KnS KnLM D C V".split()),
-            "table 3-3 gives no 32-bit number to T and Z",
-        )
-        for name in ("D1", "D2")
-    },
-    **{(name, "flags"): ([], "neither the text nor appendix 9 names a flag") for name in ("WSFR", "WSFL")},
-    **{(name, "flags"): (["carry"], "the one quotient that does not fit is told") for name in ("DIV", "DDIV")},
-    ("SUM", "flags"): (["borrow", "carry", "zero"], "6.3.19: carry and borrow are always 0 afterwards"),
-    ("ASC", "operands"): (["S", "D"], "the characters S1 to S8 are written as one word"),
-    ("PID", "S3 role"): ("dest", "S3+7 to S3+14 and S3+19 are written"),
+    **{(mnemonic, "flags"): ([], FLAGS) for mnemonic in ("ZRN", "PLSV", "DRVI", "DRVA", "ABS")},
 }
+# Operands that the text calls otherwise than the operand table: (mnemonic, name in the text) -> name in the table.
+RENAMED = {("PLSR", "D"): "D1"}
 
 
 def of_table(mnemonic):
@@ -56,9 +48,9 @@ def of_facts(mnemonic):
     """The same of the facts."""
     row = FACTS[mnemonic]
     columns = {"section": row["section"], "steps": row["steps"], "flags": sorted(row["flags"]), "models": sorted(row["models"])}
-    columns["operands"] = [operand["name"] for operand in row["operands"]]
-    for operand in row["operands"]:
-        name = operand["name"]
+    names = [RENAMED.get((mnemonic, operand["name"]), operand["name"]) for operand in row["operands"]]
+    columns["operands"] = names
+    for name, operand in zip(names, row["operands"], strict=True):
         columns |= {
             f"{name} role": operand["role"],
             f"{name} type": operand["type"],
@@ -112,7 +104,7 @@ def test_the_docstring_begins_with_a_sentence_for_the_help_page(mnemonic):
 
 def test_a_deliberate_difference_stands_in_the_decisions():
     decisions = (ROOT / "docs/decisions.md").read_text(encoding="utf-8") if DIFFERENT else ""
-    assert [name for name, _ in DIFFERENT if not re.search(rf"(?<![A-Z]){re.escape(name)}(?![A-Z])", decisions)] == []
+    assert [name for name, _ in (*DIFFERENT, *RENAMED) if not re.search(rf"(?<![A-Z]){re.escape(name)}(?![A-Z])", decisions)] == []
     assert all(reason for _, reason in DIFFERENT.values())
 
 
