@@ -1,9 +1,12 @@
 """Plc: one machine with its program, in exact simulated time."""
 
 import copy
-from collections.abc import Iterable
-from dataclasses import dataclass, field
+import threading
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field, replace
 from datetime import datetime
+from functools import wraps
+from numbers import Integral, Real
 from pathlib import Path
 from typing import Any
 
@@ -33,8 +36,18 @@ from .models import Model, get_model
 from .project import read_project
 from .values import BOOL
 
-
 LONGEST_NS = 5_000_000_000  # a program that takes longer is stopped (61) even where WDT or a watchdog of 0 would let it run
+
+
+def alone(method: Callable) -> Callable:
+    """Let a method of Plc wait until no other thread is in the middle of a scan or a change."""
+
+    @wraps(method)
+    def waiting(self, *arguments, **named):
+        with self.lock:
+            return method(self, *arguments, **named)
+
+    return waiting
 
 
 class Overrun(Exception):
@@ -43,7 +56,10 @@ class Overrun(Exception):
 
 @dataclass
 class SystemBlock:
-    """What the system block (2.2.1) sets. `retain` maps an area to its retained ranges, [(first, last), ...] as numbers."""
+    """What the system block (2.2.1) sets. `retain` maps an area to its retained ranges, [(first, last), ...] as numbers.
+
+    A Plc refuses settings that its model does not have.
+    """
 
     retain: dict[str, list[tuple[int, int]]] = field(default_factory=dict)
     hold_values: bool = False
@@ -54,6 +70,56 @@ class SystemBlock:
     watchdog_ms: int = 200
     constant_scan_ms: int = 0
     input_filter_ms: float | None = None
+
+    def check(self, model: Model) -> None:
+        """Raise EcsimError for a setting that the model does not have."""
+        if self.stop_outputs not in STOP_OUTPUTS:
+            raise EcsimError(f"stop_outputs is {self.stop_outputs!r}; choose {' or '.join(STOP_OUTPUTS)}")
+        _within("watchdog_ms", self.watchdog_ms, 0, 1000)
+        _within("constant_scan_ms", self.constant_scan_ms, 0, 1000)
+        if self.constant_scan_ms > self.watchdog_ms > 0:
+            raise EcsimError(
+                f"constant_scan_ms is {self.constant_scan_ms}, above the watchdog's {self.watchdog_ms}; raise watchdog_ms (2.1.4)"
+            )
+        if self.input_filter_ms is not None and model.filter_choices and self.input_filter_ms not in model.filter_choices:
+            raise EcsimError(f"input_filter_ms is {self.input_filter_ms!r}; {model.name} takes {choice_text(model.filter_choices)}")
+        self._check_retention(model)
+
+    def _check_retention(self, model: Model) -> None:
+        held = {"bits": 0, "words": 0, "counters": 0}
+        for area, ranges in self.retain.items():
+            if area not in model.retained:
+                raise EcsimError(f"{model.name} cannot retain {area}; it retains {', '.join(model.retained)}")
+            if len(ranges) > model.retention_limits.get("ranges", len(ranges)):
+                raise EcsimError(f"retain has {len(ranges)} ranges of {area}; {model.name} takes {model.retention_limits['ranges']}")
+            count = model.areas[area].count
+            for first, last in ranges:
+                if not (isinstance(first, int) and isinstance(last, int) and 0 <= first <= last < count):
+                    raise EcsimError(
+                        f"retain names {area} from {first!r} to {last!r}; write numbers from 0 to {count - 1}, the first one first"
+                    )
+            size = len({number for first, last in ranges for number in range(first, last + 1)})
+            held["bits" if model.areas[area].kind == "bit" else "words"] += size
+            held["counters"] += size if model.areas[area].kind == "counter" else 0
+        for what, size in held.items():
+            if size > model.retention_limits.get(what, size):
+                raise EcsimError(f"retain names {size} {what}; {model.name} can retain {model.retention_limits[what]} of them")
+
+
+STOP_OUTPUTS = ("disable", "freeze", "configure")
+
+
+def _within(what: str, value: Any, low: float, high: float) -> None:
+    """Raise EcsimError unless a number lies within its range."""
+    if isinstance(value, bool) or not isinstance(value, Real) or not low <= value <= high:
+        raise EcsimError(f"{what} is {value!r}; it is a number from {low:g} to {high:g}")
+
+
+def choice_text(choices: tuple[int, ...]) -> str:
+    """Numbers to choose from, in words: "0 to 60", "0, 8, 16, 32 or 64"."""
+    if choices == tuple(range(choices[0], choices[-1] + 1)):
+        return f"{choices[0]} to {choices[-1]}"
+    return f"{', '.join(map(str, choices[:-1]))} or {choices[-1]}"
 
 
 @dataclass(frozen=True)
@@ -82,15 +148,18 @@ class Plc:
         system: SystemBlock | None = None,
     ):
         self.model = get_model(model)
-        if scan_ms is not None and not 0.001 <= scan_ms <= 60_000:
-            raise EcsimError(f"scan_ms is {scan_ms!r}; a scan takes from 0.001 to 60000 ms, or None to model it")
+        if scan_ms is not None:
+            _within("scan_ms (None to model it)", scan_ms, 0.001, 60_000)
         self.scan_ms = scan_ms
-        self.system = system or SystemBlock()
+        self.system = replace(system or SystemBlock(), **({} if input_filter_ms is None else {"input_filter_ms": input_filter_ms}))
+        self.system.check(self.model)
+        input_filter_ms = self.model.filter_ms if self.system.input_filter_ms is None else self.system.input_filter_ms
+        self.lock = threading.RLock()  # a scan in progress has it, and so has what must not come between: load, force, run ...
         self.memory = Memory(self.model)
-        if input_filter_ms is None:
-            input_filter_ms = self.system.input_filter_ms
-        if input_filter_ms is None:
-            input_filter_ms = self.model.filter_ms
+        for name, value in self.system.data_block.items():
+            self._start_value("data_block", "D", name, value)
+        for name, value in self.system.stop_output_table.items():
+            self._start_value("stop_output_table", "Y", name, value)
         self.faults = Faults(self.memory)
         self.clock = [0]
         self._awake: list[Unit] = []  # the units that time has to ask
@@ -147,8 +216,16 @@ class Plc:
         self._restart_units()
         self.load("")
 
+    def _start_value(self, where: str, area: str, name: str, value: Any) -> None:
+        """Raise EcsimError unless the data block or the output table can hold an entry."""
+        device, kind = self.memory.parse(name)
+        if device.area != area:
+            raise EcsimError(f"{where} names {name}; it holds {area} devices")
+        self.memory.fitting(device, kind, value)
+
     # -- the program --------------------------------------------------------------------------------------------
 
+    @alone
     def load(self, program: "str | Path | Program") -> Program:
         """Download a program: its text, the path of an .il file or project folder, or a Program. A running PLC is stopped first.
 
@@ -194,6 +271,7 @@ class Plc:
         return self._tracing
 
     @tracing.setter
+    @alone
     def tracing(self, on: bool) -> None:
         self._tracing = bool(on)
         self._choose_engine()
@@ -204,6 +282,7 @@ class Plc:
         return "stepping" if isinstance(self._engine, SteppingEngine) else "compiled"
 
     @engine.setter
+    @alone
     def engine(self, name: str) -> None:
         if name not in ("compiled", "stepping"):
             raise EcsimError(f"there is no engine {name!r}; choose compiled or stepping")
@@ -234,6 +313,7 @@ class Plc:
 
     # -- RUN, STOP, power ---------------------------------------------------------------------------------------
 
+    @alone
     def run(self) -> None:
         """STOP -> RUN with the clearing of 2.1.6: retained devices stay, the data block is loaded, all else is cleared unless values are held."""
         if self.running:
@@ -253,6 +333,7 @@ class Plc:
         self.interrupts.assign({unit.event: unit.name for unit in self.program.units if unit.event is not None})
         self.running = self._first = True
 
+    @alone
     def stop(self) -> None:
         """RUN -> STOP: values are kept, outputs do what the system block says."""
         if not self.running:
@@ -268,6 +349,7 @@ class Plc:
                 device, kind = self.memory.parse(name)
                 self.memory.set(device, kind, state)
 
+    @alone
     def power_cycle(self) -> None:
         """Power off and on again with the mode switch ON: what is not retained is cleared, then RUN. What is forced stays so (2.4.6)."""
         if self.running:
@@ -336,12 +418,17 @@ class Plc:
 
         In STOP the program rests, inputs and time go on.
         """
-        for _ in range(count):
-            self._one_scan()
-        self._asked = self.clock[0]
+        if not isinstance(count, Integral) or count < 0:
+            raise EcsimError(f"{count!r} scans; give a whole number from 0 on")
+        with self.lock:
+            for _ in range(count):
+                self._one_scan()
+            self._asked = self.clock[0]
 
+    @alone
     def advance(self, ms: float) -> None:
         """Simulated time goes on by `ms` milliseconds: as many scans as begin in it."""
+        _within("ms", ms, 0, 1e12)
         self._asked = self.clock[0] + round(1000 * self.left(ms))
         while self.clock[0] < self._asked:
             self._one_scan()
@@ -506,12 +593,14 @@ class Plc:
             frames = frames.tb_next
         return RuntimeError(f"a bug of ecsim met in the program's line {line or 'unknown'}: {type(error).__name__}: {error}")
 
+    @alone
     def until(self, name: str, timeout_ms: float = 10_000, value: Any = 1) -> float:
         """Scan until a device has a value (ON when none is given); the simulated ms it took. Raises EcsimError when it does not happen in time."""
         began = self.clock[0]
         while self[name] != value:
             if self.clock[0] - began >= timeout_ms * 1000:
-                raise EcsimError(f"{name} did not become {value} within {timeout_ms:g} ms of simulated time; it is {self[name]}")
+                hint = "" if self.running else "; the PLC is in STOP, run() starts it"
+                raise EcsimError(f"{name} did not become {value} within {timeout_ms:g} ms of simulated time; it is {self[name]}{hint}")
             self._one_scan()
         self._asked = self.clock[0]
         return (self.clock[0] - began) / 1000
@@ -543,6 +632,10 @@ class Plc:
             self.memory.set(device, kind, value)
 
     get = __getitem__
+
+    def _ipython_key_completions_(self) -> list[str]:
+        """What Tab offers between the brackets: the program's names and devices."""
+        return [*self.program.names().values(), *map(str, self.in_use(tuple(self.model.areas)))]
 
     def set(self, values: dict[str, Any]) -> None:
         """Write several devices."""
@@ -613,6 +706,7 @@ class Plc:
         fixed = {self.model.special_bits: self.model.read_only_relays, self.model.special_words: self.model.read_only_registers}
         return device.number in fixed.get(device.area, ())
 
+    @alone
     def force(self, name: str, value: int) -> None:
         """Hold a bit or register at a value, whatever program and wiring say, until `unforce`."""
         device, kind = self.memory.parse(name, self._names)
@@ -623,6 +717,7 @@ class Plc:
         self.memory.force(device, kind, self.memory.fitting(device, kind, value))
         self._rebind()
 
+    @alone
     def unforce(self, name: str | None = None) -> None:
         """Release a forced device, or all of them."""
         for each in [name] if name is not None else list(self.forced):
@@ -649,6 +744,7 @@ class Plc:
 
     # -- state --------------------------------------------------------------------------------------------------
 
+    @alone
     def snapshot(self) -> dict[str, Any]:
         """Everything that changes while the PLC runs, to be given to `restore` of the same Plc with the same program."""
         return {
@@ -661,6 +757,7 @@ class Plc:
             "trace": copy.copy(self.trace),
         }
 
+    @alone
     def restore(self, snapshot: dict[str, Any]) -> None:
         """Go back to a snapshot."""
         self.memory.hold(snapshot["forced"])

@@ -61,7 +61,7 @@ class Session:
         self.late = 0  # how often the wall clock ran away
         self.log: deque[StepChange] = deque(maxlen=LOG)
         self.step_since: dict[str, int] = {}  # active step -> simulated time in us at which it began
-        self._lock = threading.RLock()
+        self._lock = plc.lock  # what a cell does to the Plc itself waits for the scan, too
         self._wake = threading.Event()
         self._actions: deque[Callable[[Plc], Any]] = deque()
         self._observers: list[Callable[[Session], Any]] = []
