@@ -22,6 +22,18 @@ DIFFERENT = {
         sorted("const KnX KnY KnM KnS KnLM KnSM D SD C V".split()),
         "the printed row is two rows run together: table 3-3 and 6.1.11 give no 32-bit number to T and Z",
     ),
+    **{
+        ("DXCH", f"{name} devices"): (
+            sorted("KnY KnM KnS KnLM D C V".split()),
+            "table 3-3 gives no 32-bit number to T and Z",
+        )
+        for name in ("D1", "D2")
+    },
+    **{(name, "flags"): ([], "neither the text nor appendix 9 names a flag") for name in ("WSFR", "WSFL")},
+    **{(name, "flags"): (["carry"], "the one quotient that does not fit is told") for name in ("DIV", "DDIV")},
+    ("SUM", "flags"): (["borrow", "carry", "zero"], "6.3.19: carry and borrow are always 0 afterwards"),
+    ("ASC", "operands"): (["S", "D"], "the characters S1 to S8 are written as one word"),
+    ("PID", "S3 role"): ("dest", "S3+7 to S3+14 and S3+19 are written"),
     **{(mnemonic, "flags"): ([], FLAGS) for mnemonic in ("ZRN", "PLSV", "DRVI", "DRVA", "ABS")},
 }
 # Operands that the text calls otherwise than the operand table: (mnemonic, name in the text) -> name in the table.
