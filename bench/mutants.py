@@ -16,8 +16,8 @@ import ast
 import copy
 import linecache
 import multiprocessing
+import resource
 import sys
-import time
 import types
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator
@@ -29,14 +29,14 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
 from ecsim.instructions import TABLE  # noqa: E402
-from ecsim.instructions.signature import TYPES, parse_signature  # noqa: E402
+from ecsim.instructions.signature import parse_signature  # noqa: E402
 from ecsim.scenario import load_cases, run_case  # noqa: E402
 
 SOURCES = ROOT / "ecsim" / "instructions"
 PAGE = ROOT / "docs" / "mutation.md"
 NO_CHAPTER = {"__init__", "define", "signature"}
 WORKERS = 2
-LIMIT_S = 20  # for all cases of a mutant; a run without end is noticed, too
+LIMIT_S = 60  # of the processor for all cases of a mutant; a run without end is noticed, too
 
 # Survivors that say the same as the original: how the table names them -> why no program can tell.
 EQUIVALENT: dict[str, str] = {}
@@ -52,7 +52,7 @@ COMPARISONS = {
 }  # fmt: skip
 CALLS = {"min": "max", "max": "min", "floor": "ceil", "sin": "cos", "cos": "sin", "tan": "sin", "log": "exp", "exp": "log"}
 WORDS = {"and": "or", "or": "and", "set": "reset", "reset": "set", "outputs": "data", "data": "outputs"}
-BEHAVIOUR = {"cleared", "resets", "rising", "check", "counted", "faults", "occupies"}  # columns whose loss a program may feel
+BEHAVIOUR = {"cleared", "resets", "rising", "check", "counted", "occupies"}  # columns whose loss a program may feel
 
 
 @dataclass
@@ -73,8 +73,8 @@ class Mutant:
 # -- making them --------------------------------------------------------------------------------------------------
 
 
-def changes(node: ast.AST, inside: bool) -> Iterator[tuple[str, Callable[[ast.AST], ast.AST | None]]]:
-    """The ways to spoil one node: the words for it and the function that gives the new one (None: nothing stays in its place)."""
+def changes(node: ast.AST, inside: bool) -> Iterator[Callable[[ast.AST], ast.AST | None]]:
+    """The ways to spoil one node: functions that give the new one, or None where nothing stays in its place."""
 
     def exchanged(attribute: str, new: object) -> Callable[[ast.AST], ast.AST]:
         def apply(node: ast.AST) -> ast.AST:
@@ -86,53 +86,54 @@ def changes(node: ast.AST, inside: bool) -> Iterator[tuple[str, Callable[[ast.AS
     match node:
         case ast.BinOp():
             for new in OPERATORS.get(type(node.op), []):
-                yield "operator", exchanged("op", new())
+                yield exchanged("op", new())
         case ast.AugAssign():
             for new in OPERATORS.get(type(node.op), []):
-                yield "operator", exchanged("op", new())
+                yield exchanged("op", new())
         case ast.Compare():
             for place, operator in enumerate(node.ops):
                 for new in COMPARISONS[type(operator)]:
-                    yield "comparison", exchanged("ops", [*node.ops[:place], new(), *node.ops[place + 1 :]])
+                    yield exchanged("ops", [*node.ops[:place], new(), *node.ops[place + 1 :]])
         case ast.BoolOp():
-            yield "and/or", exchanged("op", ast.Or() if isinstance(node.op, ast.And) else ast.And())
+            yield exchanged("op", ast.Or() if isinstance(node.op, ast.And) else ast.And())
         case ast.UnaryOp():
-            yield "sign", lambda node: node.operand
+            yield lambda node: node.operand
         case ast.IfExp():
-            yield "branches", lambda node: ast.IfExp(node.test, node.orelse, node.body)
+            yield lambda node: ast.IfExp(node.test, node.orelse, node.body)
         case ast.Constant(value=bool()):
-            yield "flag", exchanged("value", not node.value)
+            yield exchanged("value", not node.value)
         case ast.Constant(value=int() | float()):
-            yield "+1", exchanged("value", node.value + 1)
-            yield "-1", exchanged("value", node.value - 1)
+            yield exchanged("value", node.value + 1)
+            yield exchanged("value", node.value - 1)
         case ast.Constant(value=str()) if node.value in WORDS:
-            yield "word", exchanged("value", WORDS[node.value])
+            yield exchanged("value", WORDS[node.value])
         case ast.Slice():
             for bound in ("lower", "upper", "step"):
                 if getattr(node, bound) is not None:
-                    yield "bound", exchanged(bound, None)
+                    yield exchanged(bound, None)
         case ast.Tuple(ctx=ast.Load()) if inside and len(node.elts) == 2 and all(isinstance(part, ast.Name) for part in node.elts):
-            yield "order", exchanged("elts", node.elts[::-1])
+            yield exchanged("elts", node.elts[::-1])
         case ast.Call(func=ast.Name(id=name)) if name in CALLS and (name in ("min", "max", "floor")):
-            yield "function", exchanged("func", ast.Name(CALLS[name], ast.Load()))
+            yield exchanged("func", ast.Name(CALLS[name], ast.Load()))
         case ast.Call(func=ast.Attribute(attr=name)) if name in CALLS:
-            yield "function", exchanged("func", ast.Attribute(node.func.value, CALLS[name], ast.Load()))
+            yield exchanged("func", ast.Attribute(node.func.value, CALLS[name], ast.Load()))
         case ast.Call(func=ast.Name(id="abs" | "rounded" | "single"), args=[_]):
-            yield "function", lambda node: node.args[0]
+            yield lambda node: node.args[0]
     if isinstance(node, (ast.If, ast.While)):
-        yield "condition", exchanged("test", ast.UnaryOp(ast.Not(), node.test))
+        yield exchanged("test", ast.UnaryOp(ast.Not(), node.test))
     if inside and isinstance(node, (ast.Assign, ast.AugAssign, ast.Raise, ast.Break)):
-        yield "statement", lambda node: None
+        yield lambda node: None
     if inside and isinstance(node, ast.Expr) and isinstance(node.value, ast.Call):
-        yield "statement", lambda node: None
+        yield lambda node: None
 
 
 def decorations(call: ast.Call) -> Iterator[tuple[str, str, ast.Call]]:
     """The ways to spoil a decorator: a flag, a range, a span or a column less, a bound off by one."""
     for place, keyword in enumerate(call.keywords):
-        if keyword.arg in BEHAVIOUR:
+        command = isinstance(call.func, ast.Name) and call.func.id == "command"
+        if keyword.arg in BEHAVIOUR or (keyword.arg == "faults" and command):  # of others it is for the help page alone
             yield ast.unparse(keyword), "", ast.Call(call.func, call.args, [*call.keywords[:place], *call.keywords[place + 1 :]])
-        if keyword.arg in ("flags", "faults") and isinstance(keyword.value, ast.Tuple) and len(keyword.value.elts) > 1:
+        if keyword.arg == "flags" and isinstance(keyword.value, ast.Tuple) and len(keyword.value.elts) > 1:
             for out in keyword.value.elts:
                 less = ast.keyword(keyword.arg, ast.Tuple([word for word in keyword.value.elts if word is not out], ast.Load()))
                 new = [*call.keywords[:place], less, *call.keywords[place + 1 :]]
@@ -157,7 +158,7 @@ def signatures(text: str) -> Iterator[str]:
             others += [f"{bare}={low}..{int(high) + step}" for step in (1, -1) if int(high) + step <= kind.high]
         if "^" in word:
             others.append(word.replace("^", ""))
-        head, star, span = bare.partition("*")
+        _, star, span = bare.partition("*")
         digits = span.rstrip("^~!")
         if star and digits.isdigit():
             others += [word.replace(f"*{digits}", f"*{int(digits) + step}") for step in (1, -1) if int(digits) + step > 0]
@@ -178,39 +179,41 @@ class _Replaced(ast.NodeTransformer):
         return ast.Pass() if self.new is None else self.new
 
 
-def _spoilt(tree: ast.Module, path: list[tuple[str, int | None]], apply: Callable) -> tuple[str, str, str]:
-    """The source of a tree whose node at a path is changed, and the words before and after, with a little around what is small."""
-    tree = copy.deepcopy(tree)
-    holders: list[ast.AST] = [tree]
+def _spoilt(statement: ast.stmt, path: tuple, apply: Callable) -> tuple[str, str, str]:
+    """The source of a statement whose node at a path is changed, and the words before and after, with a little around what is small."""
+    statement = copy.deepcopy(statement)
+    holders: list[ast.AST] = [statement]
     for attribute, place in path:
         holders.append(getattr(holders[-1], attribute) if place is None else getattr(holders[-1], attribute)[place])
     node = shown = holders.pop()
-    while isinstance(shown, (ast.Constant, ast.Name, ast.Slice, ast.UnaryOp)) and isinstance(
-        holders[-1], ast.expr | ast.Return | ast.Assign
-    ):
+    while isinstance(shown, _SMALL) and holders and isinstance(holders[-1], ast.expr | ast.Return | ast.Assign | ast.keyword):
         shown = holders.pop()
     old = _words(shown)
     replacer = _Replaced(node, apply)
-    tree = ast.fix_missing_locations(replacer.visit(tree))
+    statement = ast.fix_missing_locations(replacer.visit(statement))
     if replacer.new is None:
-        return ast.unparse(tree), old, ""
-    return ast.unparse(tree), old, _words(replacer.new if shown is node else shown)
+        return ast.unparse(statement), old, ""
+    return ast.unparse(statement), old, _words(replacer.new if shown is node else shown)
+
+
+_SMALL = (ast.Constant, ast.Name, ast.Slice, ast.UnaryOp)
 
 
 def _words(node: ast.AST) -> str:
     return f"if {ast.unparse(node.test)}" if isinstance(node, (ast.If, ast.While)) else ast.unparse(node)
 
 
-def _nodes(node: ast.AST, path: tuple = ()) -> Iterator[tuple[ast.AST, tuple]]:
-    """Every node below one with the way to it; docstrings, signatures' types and annotations left out."""
+def _nodes(node: ast.AST, path: tuple = (), holders: tuple[ast.AST, ...] = ()) -> Iterator[tuple[ast.AST, tuple, tuple[ast.AST, ...]]]:
+    """Every node below one with the way to it and all that hold it; docstrings, decorators and annotations left out."""
     for name, value in ast.iter_fields(node):
         if name in ("returns", "annotation", "decorator_list"):
             continue
         for place, child in enumerate(value) if isinstance(value, list) else [(None, value)]:
-            if isinstance(child, ast.AST):
-                below = (*path, (name, place))
-                yield child, below
-                yield from _nodes(child, below)
+            text = isinstance(child, ast.Expr) and isinstance(child.value, ast.Constant)
+            if isinstance(child, ast.AST) and not text:
+                way, above = (*path, (name, place)), (*holders, node)
+                yield child, way, above
+                yield from _nodes(child, way, above)
 
 
 def _names(node: ast.AST) -> set[str]:
@@ -257,37 +260,30 @@ def mutants(module: str) -> list[Mutant]:
     source = (SOURCES / f"{module}.py").read_text(encoding="utf-8")
     tree = ast.parse(source)
     felt = reach(tree, module)
+    texts = [ast.unparse(statement) for statement in tree.body]
     found: list[Mutant] = []
-
-    def add(line: int, where: str, old: str, new: str, text: str, mnemonics: tuple[str, ...]) -> None:
-        if mnemonics and not any(text == other.source for other in found):
-            found.append(Mutant(module, line, where, old, new, text, mnemonics))
+    seen: set[str] = set(texts)
 
     for place, statement in enumerate(tree.body):
-        if isinstance(statement, (ast.Import, ast.ImportFrom)):
+        mnemonics = felt(statement)
+        if not mnemonics or isinstance(statement, (ast.Import, ast.ImportFrom)):
             continue
-        for node, path in [(statement, ()), *_nodes(statement)]:
-            line = getattr(node, "lineno", statement.lineno)
-            holders = [statement]
-            for attribute, index in path:
-                holders.append(getattr(holders[-1], attribute) if index is None else getattr(holders[-1], attribute)[index])
-            within = [holder for holder in holders if isinstance(holder, ast.FunctionDef)]
-            where = within[-1].name if within else ""
-            if isinstance(node, ast.Constant) and isinstance(node.value, str) and isinstance(holders[-2], ast.Expr):
-                continue
-            for _, apply in changes(node, inside=bool(within)):
-                text, old, new = _spoilt(tree, [("body", place), *path], apply)
-                add(line, where, old, new, text, felt(statement))
-            if not isinstance(node, ast.FunctionDef):
-                continue
-            for at, call in enumerate(node.decorator_list):
-                if not isinstance(call, ast.Call):
+        for node, path, holders in [(statement, (), []), *_nodes(statement)]:
+            functions = [holder.name for holder in [*holders, node] if isinstance(holder, ast.FunctionDef)]
+            spoilt = [(path, apply, None, mnemonics) for apply in changes(node, inside=bool(functions))]
+            for at, call in enumerate(node.decorator_list if isinstance(node, ast.FunctionDef) else []):
+                if isinstance(call, ast.Call):
+                    own = (call.args[0].value,) if call.args and isinstance(call.args[0], ast.Constant) else mnemonics
+                    way = (*path, ("decorator_list", at))
+                    spoilt += [(way, lambda _, new=new: new, (old, shown), own) for old, shown, new in decorations(call)]
+            for way, apply, told, felt_by in spoilt:
+                text, old, new = _spoilt(statement, way, apply)
+                if text in seen:
                     continue
-                literal = call.args and isinstance(call.args[0], ast.Constant)
-                for old, shown, new in decorations(call):
-                    spoilt = [("body", place), *path, ("decorator_list", at)]
-                    text, _, _ = _spoilt(tree, spoilt, lambda _, new=new: copy.deepcopy(new))
-                    add(call.lineno, node.name, old, shown, text, (call.args[0].value,) if literal else felt(statement))
+                seen.add(text)
+                whole = "\n\n".join([*texts[:place], text, *texts[place + 1 :]])
+                line = getattr(node, "lineno", statement.lineno)
+                found.append(Mutant(module, line, functions[-1] if functions else "", *(told or (old, new)), whole, felt_by))
     count: Counter[str] = Counter()
     for mutant in found:
         base = f"{module}.{mutant.where}: {mutant.old} -> {mutant.new or 'nothing'}"
@@ -309,7 +305,7 @@ def install(mutant: Mutant) -> None:
     spoilt.__file__ = place
     linecache.cache[place] = (len(mutant.source), None, mutant.source.splitlines(keepends=True), place)
     sys.modules[spoilt.__name__] = spoilt
-    exec(compile(mutant.source, place, "exec"), spoilt.__dict__)  # noqa: S102
+    exec(compile(mutant.source, place, "exec"), spoilt.__dict__)
 
 
 def noticed(mutant: Mutant, cases: list[dict]) -> str:
@@ -330,6 +326,7 @@ def noticed(mutant: Mutant, cases: list[dict]) -> str:
 
 
 def _work(mutant: Mutant, cases: list[dict], answer) -> None:
+    resource.setrlimit(resource.RLIMIT_CPU, (LIMIT_S, LIMIT_S))
     answer.send(noticed(mutant, cases))
     answer.close()
 
@@ -346,22 +343,15 @@ def judge(all_mutants: list[Mutant], cases: dict[str, list[dict]]) -> None:
             process = fork.Process(target=_work, args=(mutant, own, there))
             process.start()
             there.close()
-            running[here] = (mutant, process, time.monotonic() + LIMIT_S)
-        ready = wait(list(running), timeout=max(0, min(until for *_, until in running.values()) - time.monotonic()))
-        for answer, (mutant, process, until) in list(running.items()):
-            if answer in ready:
-                try:
-                    mutant.verdict = answer.recv()
-                except EOFError:
-                    mutant.verdict = "its process ended"
-            elif time.monotonic() >= until:
+            running[here] = mutant, process
+        for answer in wait(list(running)):
+            mutant, process = running.pop(answer)
+            try:
+                mutant.verdict = answer.recv()
+            except EOFError:
                 mutant.verdict = "a run without end"
-                process.kill()
-            else:
-                continue
             process.join()
             answer.close()
-            del running[answer]
 
 
 def conformance() -> dict[str, list[dict]]:
