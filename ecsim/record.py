@@ -88,3 +88,48 @@ class Recording:
 
     def __repr__(self) -> str:
         return f"<Recording of {', '.join(self.names)}: {len(self)} changes>"
+
+
+class PulseTrain:
+    """What a pulse output, "Y0" or "Y1", has put out so far: the time of every pulse and the frequency as a curve.
+
+    The last 4,096 segments of even speed or even acceleration are kept; PWM is no train of counted pulses and not among them.
+    """
+
+    def __init__(self, plc: Plc, name: str):
+        device, _ = plc.memory.parse(name, plc._names)
+        if not isinstance(device, Device) or device.area != "Y" or device.number >= len(plc.outputs.axes):
+            raise EcsimError(f"{name} is no pulse output; Y0 and Y1 are")
+        self.name, self._outputs, self._number, self._clock = name, plc.outputs, device.number, plc.clock
+
+    def __len__(self) -> int:
+        return sum(segment.pulses for segment in self._outputs.trains(self._number, self._clock[0]))
+
+    @property
+    def times(self) -> "tuple[numpy.ndarray, numpy.ndarray]":
+        """When each pulse turned ON and OFF, in seconds: two arrays of equal length."""
+        import numpy
+
+        pulses = numpy.array(self._outputs.times(self._number, self._clock[0]), dtype=float).reshape(-1, 2) / 1e6
+        return pulses[:, 0], pulses[:, 1]
+
+    @property
+    def frequency(self) -> "tuple[numpy.ndarray, numpy.ndarray]":
+        """The corners of the frequency curve: times in seconds and Hz, to be joined by straight lines."""
+        import numpy
+
+        curve = numpy.array(self._outputs.frequency(self._number, self._clock[0]), dtype=float).reshape(-1, 2)
+        return curve[:, 0] / 1000, curve[:, 1]
+
+    def plot(self, axes=None):
+        """Draw the frequency over time into matplotlib axes, new ones without any given; gives the axes."""
+        if axes is None:
+            from matplotlib import pyplot
+
+            axes = pyplot.subplots()[1]
+        axes.plot(*self.frequency, label=self.name)
+        axes.set(xlabel="s", ylabel="Hz", ylim=(0, None))
+        return axes
+
+    def __repr__(self) -> str:
+        return f"<PulseTrain of {self.name}: {len(self)} pulses>"

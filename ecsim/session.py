@@ -86,6 +86,9 @@ class Session:
         outputs = [(name, device.number) for name, device in places if device.area == "Y"]
         self._output_names = [name for name, _ in outputs]
         self._driven = itemgetter(*(number for _, number in outputs), 0) if outputs else lambda image: ()
+        counted = getattr(self.plant, "counted", frozenset())  # outputs of which the plant gets the number of pulses, not the level
+        self._counted = {name: plc.outputs.axes[number] for name, number in outputs if name in counted}
+        self._sent = {name: axis.total for name, axis in self._counted.items()}
         self._last_driven: tuple | None = None
         self._last_sensors: dict[str, int] | None = None
         self._inputs = {name: device.number for name, device in places if device.area == "X"}
@@ -114,6 +117,8 @@ class Session:
             if driven != self._last_driven:
                 self._last_driven = driven
                 self._outputs = dict(zip(self._output_names, map(int, driven), strict=False))
+            if self._counted:
+                self._outputs = self._outputs | self._new_pulses()
             sensors = self.plant.step((now - before) / 1e6, self._outputs)
             if sensors != self._last_sensors:
                 self._last_sensors = sensors
@@ -123,6 +128,11 @@ class Session:
             self._note_steps()
         if self.recording is not None:
             self.recording.sample()
+
+    def _new_pulses(self) -> dict[str, int]:
+        """The pulses of each counted output since the last look."""
+        sent, self._sent = self._sent, {name: axis.total for name, axis in self._counted.items()}
+        return {name: total - sent[name] for name, total in self._sent.items()}
 
     def _note_steps(self) -> None:
         values = self._step_values(self.plc.memory.lists["S"])
@@ -146,6 +156,7 @@ class Session:
     def _put(self, frame: tuple) -> None:
         snapshot, plant, on, since, log = frame
         self.plc.restore(snapshot)
+        self._bind()
         _restore(self.plant, plant)
         self._plant_on = on
         self._last_driven = self._last_sensors = None

@@ -61,7 +61,9 @@ def occupied(units: list[Unit], model: Model) -> tuple[set[int], set[int]]:
             if instruction.definition.occupies:
                 taken.update(instruction.definition.occupies(model, instruction.operands))
             watched.update(captures(instruction.operands, model))
-    watched.update(unit.event % FALLING for unit in units if unit.event is not None and unit.event < 2 * FALLING and unit.event % FALLING < EDGES)
+    watched.update(
+        unit.event % FALLING for unit in units if unit.event is not None and unit.event < 2 * FALLING and unit.event % FALLING < EDGES
+    )
     return taken, watched
 
 

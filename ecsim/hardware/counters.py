@@ -155,7 +155,7 @@ class Counters(Unit):
 
     # -- runs ---------------------------------------------------------------------------------------------------
 
-    def _run(self, number: int) -> tuple[Signal, bool, int] | None | Callable:
+    def _run(self, number: int) -> tuple[Signal, bool, int] | Callable | None:
         """What the counter counts from now on: (signal, sense, worth), None for nothing, or the edges one by one."""
         fast, signals = self.model.fast_counters[number], self.inputs.signals
         if not self._open(fast):
@@ -182,7 +182,7 @@ class Counters(Unit):
     def _merged(self, number: int, after: int, until: int) -> Iterator[tuple[int, int]]:
         """(moment, worth) of each counting edge in (after, until], where both inputs move."""
         fast, signals = self.model.fast_counters[number], self.inputs.signals
-        first, second = fast.inputs
+        first, _second = fast.inputs
         a = signals[first].level(after) if first in signals else self.inputs.terminals[first]
         edges = {source: signals[source].next(after) for source in fast.inputs if source in signals}
         while True:

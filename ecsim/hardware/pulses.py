@@ -44,6 +44,7 @@ class Axis:
     home: Home | None = None
     clearing: int = 0  # the end of ZRN's clear pulse, 0 without one
     warning: int = 0  # an error that is reported for as long as the instruction is driven
+    total: int = 0  # pulses since the machine was made, which no program can write
     free: int = -1  # when the output was given back: positioning waits for another scan (6.17.4)
 
     @property
@@ -202,6 +203,7 @@ class PulseOutputs(Unit):
 
     def _note(self, axis: Axis, segment: Segment, pulses: int) -> None:
         registers = self.model.registers
+        axis.total += pulses
         self._add(registers["pulses"] + 2 * axis.number, pulses)
         self._add(registers["pulses of both"], pulses)
         if segment.direction:
@@ -287,18 +289,24 @@ class PulseOutputs(Unit):
         curve: list[tuple[float, float]] = []
         for segment in self.trains(number, now):
             begin, end = segment.start / 1000, segment.end / 1000
-            if not curve or curve[-1][0] < begin:
-                curve += [(curve[-1][0], 0.0)] * bool(curve) + [(begin, 0.0)]
+            if curve and curve[-1][0] < begin:
+                curve.append((curve[-1][0], 0.0))
+            if not curve or curve[-1][1] == 0.0:
+                curve.append((begin, 0.0))
             curve += [(begin, segment.hertz), (end, segment.frequency(segment.end))]
-        return curve
+        return [*curve, (curve[-1][0], 0.0)] if curve and not self.axes[number].busy else curve
 
     def snapshot(self) -> tuple:
         return tuple(replace(axis) for axis in self.axes), tuple(tuple(kept) for kept in self.history)
 
     def restore(self, snapshot: tuple) -> None:
         axes, history = snapshot
-        self.axes = tuple(replace(axis) for axis in axes)
-        self.history = tuple(deque(kept, maxlen=KEPT) for kept in history)
+        for axis, kept in zip(self.axes, axes, strict=True):
+            for name in Axis.__slots__:
+                setattr(axis, name, getattr(kept, name))
+        for trains, kept in zip(self.history, history, strict=True):
+            trains.clear()
+            trains.extend(kept)
         self._rest()
 
 
@@ -324,7 +332,7 @@ class Wired:
     @staticmethod
     def _passed(part: Segment | Wave, pulses: int | None, rising: bool, moment: int) -> int:
         if isinstance(part, Segment):
-            n = part.started(moment) if rising else part.counted(moment)
+            n = part.counted(moment) if rising else part.completed(moment)
         else:
             n = part.started(moment if rising else moment - part.width)
         return n if pulses is None else min(n, pulses)

@@ -5,6 +5,7 @@ of one sense lie in a stretch of time, and when the n-th of them comes. Times ar
 leaves out its begin. `end` is the moment from which nothing changes, None for a signal without end.
 """
 
+import itertools
 from bisect import bisect_right
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -137,7 +138,7 @@ class Edges:
     def hertz(self) -> float:
         """The rate of the two rising edges that stand closest."""
         rises = self.times[self._from(True) :: 2]
-        gaps = [b - a for a, b in zip(rises, rises[1:], strict=False)]
+        gaps = [b - a for a, b in itertools.pairwise(rises)]
         return 1e6 / max(1, min(gaps)) if gaps else 0.0
 
 

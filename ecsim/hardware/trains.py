@@ -1,6 +1,6 @@
 """Pulse trains that outputs put out, as values: segments of constant or evenly changing frequency, and the plans of PLSR, PLS and positioning.
 
-A pulse is ON for the first half of its period and counts with its falling edge (6.17.5). All times are whole microseconds.
+A pulse is OFF for the first half of its period, then ON; it counts when it turns ON. All times are whole microseconds.
 """
 
 from collections.abc import Iterable
@@ -28,33 +28,37 @@ class Segment:
             return int(1e6 * halves / (self.hertz + root))
         return halves * HALF_US // round(10 * self.hertz)
 
-    def _points(self, odd: int, elapsed: int) -> int:
-        """How many rising (even) or falling (odd) edges lie in the first `elapsed` us."""
+    def _points(self, half: int, elapsed: int) -> int:
+        """Of how many pulses the begin (0), the rising edge (1) or the falling edge (2) lies in the first `elapsed` us."""
         if elapsed < 0:
             return 0
         if not self.slope:
-            n = (((elapsed + 1) * round(10 * self.hertz) - 1) // HALF_US - odd) // 2 + 1
+            n = (((elapsed + 1) * round(10 * self.hertz) - 1) // HALF_US - half) // 2 + 1
         else:
             seconds = elapsed / 1e6
             if self.slope < 0:
                 seconds = min(seconds, -self.hertz / self.slope)
-            n = int(self.hertz * seconds + self.slope * seconds * seconds / 2 + 1 - odd / 2)
-            while n > 0 and self.point(2 * (n - 1) + odd) > elapsed:
+            n = int(self.hertz * seconds + self.slope * seconds * seconds / 2 + 1 - half / 2)
+            while n > 0 and self.point(2 * (n - 1) + half) > elapsed:
                 n -= 1
-            while (self.pulses is None or n < self.pulses) and self.point(2 * n + odd) <= elapsed:
+            while (self.pulses is None or n < self.pulses) and self.point(2 * n + half) <= elapsed:
                 n += 1
         return max(0, n if self.pulses is None else min(n, self.pulses))
 
     def started(self, moment: int) -> int:
-        """Pulses that have begun by a moment."""
+        """Pulses whose period has begun by a moment."""
         return self._points(0, moment - self.start)
 
     def counted(self, moment: int) -> int:
-        """Pulses whose falling edge has come."""
+        """Pulses that have turned ON by a moment."""
         return self._points(1, moment - self.start)
 
+    def completed(self, moment: int) -> int:
+        """Pulses that have turned OFF again."""
+        return self._points(2, moment - self.start)
+
     def level(self, moment: int) -> bool:
-        return self.started(moment) > self.counted(moment)
+        return self.counted(moment) > self.completed(moment)
 
     @property
     def end(self) -> int | None:
@@ -66,7 +70,7 @@ class Segment:
 
     def edge(self, rising: bool, index: int) -> int:
         """The time of the index-th edge of one sense, from 0."""
-        return self.start + self.point(2 * index + (not rising))
+        return self.start + self.point(2 * index + (1 if rising else 2))
 
     def cut(self, moment: int) -> "Segment":
         """The segment up to the end of the pulse that is on its way."""

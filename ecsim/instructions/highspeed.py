@@ -14,9 +14,7 @@ def _counter_inputs(model, operands):
     return model.fast_counters[counter.number].needs
 
 
-@command(
-    "HCNT", "claim >D:HCOUNTER S:DINT", steps=7, section="6.10.1", cleared=True, faults=(OPERAND,), occupies=_counter_inputs
-)
+@command("HCNT", "claim >D:HCOUNTER S:DINT", steps=7, section="6.10.1", cleared=True, faults=(OPERAND,), occupies=_counter_inputs)
 def hcnt(machine, claim, counter, preset):
     """Drive a high-speed counter: it counts its inputs while the flow is ON; its contact turns ON at S upward and OFF downward."""
     machine.counters.drive(claim, counter, preset, machine.clock[0])

@@ -162,7 +162,8 @@ def test_a_long_train_is_counted_without_its_edges_being_stepped(monkeypatch):
     plc.square("X0", hz=50_000)
     monkeypatch.setattr(Train, "next", lambda *_: pytest.fail("an edge was stepped"))
     plc.advance(ms=60_000)
-    assert plc["C236"] == 3_000_000 and plc["M0"] == 1
+    assert plc["C236"] == 3_000_000
+    assert plc["M0"] == 1
 
 
 def test_frequencies_beyond_the_limits_are_reported():
@@ -178,7 +179,12 @@ def test_frequencies_beyond_the_limits_are_reported():
 
 @pytest.mark.parametrize(
     ("program", "hz", "limit"),
-    [("HCNT C236 0", 51_000, 50), ("HCNT C236 0\nDHSCS 5 C236 M0", 11_000, 10), ("HCNT C236 0\nDHSZ 1 2 C236 M0", 6_000, 5), ("HCNT C242 0", 11_000, 10)],
+    [
+        ("HCNT C236 0", 51_000, 50),
+        ("HCNT C236 0\nDHSCS 5 C236 M0", 11_000, 10),
+        ("HCNT C236 0\nDHSZ 1 2 C236 M0", 6_000, 5),
+        ("HCNT C242 0", 11_000, 10),
+    ],
 )
 def test_a_comparison_lowers_the_greatest_frequency(program, hz, limit):
     plc = Plc("EC20")
@@ -188,12 +194,15 @@ def test_a_comparison_lowers_the_greatest_frequency(program, hz, limit):
     plc.square("X0", hz=limit * 1000)
     assert plc.warnings == []
     plc.square("X0", hz=hz)
-    assert len(plc.warnings) == 1 and f"counts up to {limit} kHz" in plc.warnings[0]
+    assert len(plc.warnings) == 1
+    assert f"counts up to {limit} kHz" in plc.warnings[0]
 
 
 def test_a_comparison_sets_its_output_at_the_edge_however_late_the_scan():
     plc = Plc("EC20", scan_ms=1000)
-    plc.load("PROGRAM MAIN\nLD SM1\nEI\nSET SM66\nMOV 1 SD66\nLD SM0\nHCNT C236 0\nDHSCS 5 C236 Y10\nEND_PROGRAM\nINTERRUPT I EVENT 26\nLDI Y10\nINC D0\nEND_INTERRUPT")
+    plc.load(
+        "PROGRAM MAIN\nLD SM1\nEI\nSET SM66\nMOV 1 SD66\nLD SM0\nHCNT C236 0\nDHSCS 5 C236 Y10\nEND_PROGRAM\nINTERRUPT I EVENT 26\nLDI Y10\nINC D0\nEND_INTERRUPT"
+    )
     plc.run()
     plc.scan()
     plc.pulse("X0", count=10, ms=100)  # the fifth pulse rises at 40 + 2.5 ms
