@@ -1,6 +1,7 @@
 """From text to a program: read, resolved, checked against TABLE and the model, all problems reported together."""
 
 from dataclasses import replace
+from difflib import get_close_matches
 
 from ..devices import Bits, Constant, Device, Name
 from ..errors import Problem, ProgramError
@@ -13,6 +14,16 @@ from .operands import Refused, Resolver
 from .program import Instruction, Network, Program, Region, Unit, Variable
 from .reader import RawUnit, RawVariable, Source, Statement, read, shown
 from .structure import find_structure
+
+# Words that other languages and families have for what is written otherwise here.
+FOREIGN = {
+    **dict.fromkeys(("END", "FEND"), "a program ends with its last line"),
+    **{word: f"write {here}" for word, here in (("LDN", "LDI"), ("ANDN", "ANI"), ("ORN", "ORI"), ("AN", "ANI"), ("ON", "ORI"), ("ST", "OUT"))},
+    **{word: f"write {here}" for word, here in (("S", "SET"), ("R", "RST"), ("RES", "RST"), ("JMP", "CJ"), ("NOT", "INV"), ("SRET", "CSRET"))},
+    **{f"{join}P": f"write {join} and EU behind the contacts" for join in ("LD", "AND", "OR")},
+    **{f"{join}F": f"write {join} and ED behind the contacts" for join in ("LD", "AND", "OR")},
+    "PLF": "write ED before OUT",
+}  # fmt: skip
 
 __all__ = ["Instruction", "Network", "Program", "Region", "Unit", "Variable", "assemble"]
 
@@ -241,14 +252,9 @@ class _Assembler:
             hint = f"write {' or '.join(here)}" if here else f"{written} exists on {' and '.join(row.models)}"
             self.source.report(statement.line, f"{self.model.name} has no {written}", hint, row.section)
             return
-        from difflib import get_close_matches
-
         close = get_close_matches(written[:12], self.definitions, 3, 0.6)
-        self.source.report(
-            statement.line,
-            f"{shown(written)} is no instruction",
-            f"did you mean {' or '.join(close)}?" if close else "one instruction a line, for example LD X0",
-        )
+        hint = FOREIGN.get(written) or (f"did you mean {' or '.join(close)}?" if close else "one instruction a line, for example LD X0")
+        self.source.report(statement.line, f"{shown(written)} is no instruction", hint)
 
     def _operands(self, definition: Definition, statement: Statement, unit: Unit):
         specs, words = definition.operands, statement.operands
@@ -256,7 +262,11 @@ class _Assembler:
             names = " ".join(spec.name for spec in specs)
             wanted = f"{definition.mnemonic} takes {len(specs)} operand{'s' if len(specs) != 1 else ''}" + (f" ({names})" if specs else "")
             self.source.report(
-                statement.line, f"{wanted}, found {len(words)}", "", definition.section, word=min(len(words), len(specs) + 1)
+                statement.line,
+                f"{wanted}, found {len(words)}",
+                self._too_many(definition, words),
+                definition.section,
+                word=min(len(words), len(specs) + 1),
             )
             return None
         operands = []
@@ -290,6 +300,16 @@ class _Assembler:
                 self.source.report(statement.line, refused.message, refused.hint, refused.section, word=place)
                 fits = False
         return fits
+
+    def _too_many(self, definition: Definition, words: tuple[str, ...]) -> str:
+        """What may have been meant by more words than an instruction takes."""
+        if len(words) <= len(definition.operands):
+            return ""
+        for place, word in enumerate(words):
+            compare = f"{definition.mnemonic}{word}"
+            if compare in self.definitions and len(words) == 3:
+                return f"a comparison is written {compare} {' '.join(words[:place] + words[place + 1 :])}"
+        return "one instruction a line" if any(word.upper() in self.definitions for word in words) else ""
 
     def _call_operands(self, definition: Definition, statement: Statement, unit: Unit):
         words = statement.operands

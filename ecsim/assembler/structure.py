@@ -59,6 +59,7 @@ class _Structure:
             )
             region.closing = end
         self._check_jumps()
+        self._check_flows()
         if self.unit.kind == "MAIN":
             _Transitions(self.unit, self.steps, self.initial_steps, self.report).check()
 
@@ -315,6 +316,14 @@ class _Structure:
         self._push(Region(kind, number, index))
         self.start = index + 1
 
+    def _check_flows(self) -> None:
+        """A section of steps, closed by RET, is one independent flow."""
+        closers = [instruction for instruction in self.unit.instructions if instruction.mnemonic == "RET"]
+        if len(closers) > self.limits["flows"]:
+            self.report(
+                closers[self.limits["flows"]], f"there are {len(closers)} flows of steps", f"at most {self.limits['flows']}", "7.1.2"
+            )
+
     def _check_jumps(self) -> None:
         for instruction, label, loops in self.jumps:
             if label not in self.labels:
@@ -349,12 +358,20 @@ class _Transitions:
             sources = [s.number for s in region.steps]
             back = any(order.get(target.number, 0) <= order.get(source, -1) for source in sources)
             if instruction.mnemonic == "SET":
-                if target.number < self.initial_steps or back:
+                if target.number < self.initial_steps and not back:
+                    self.report(
+                        instruction,
+                        f"{instruction} leads to an initial step",
+                        f"S0 to S{self.initial_steps - 1} are initial; a jump is written OUT {target}",
+                        "7.4.1(6)",
+                    )
+                elif back:
                     self.report(instruction, f"{instruction} goes back", f"a jump is written OUT {target}", "7.4.1(6)")
                 elif self._section(target.number) != section:
                     self.report(instruction, f"{instruction} leads into another flow", f"a jump is written OUT {target}", "7.4.1(6)")
                 elif self._reached_another_way(sources, target.number, links):
-                    self.report(instruction, f"{instruction} leaves out the steps between", f"a jump is written OUT {target}", "7.4.1(6)")
+                    hint = self._joined_twice(sources) or f"a jump is written OUT {target}"
+                    self.report(instruction, f"{instruction} leaves out the steps between", hint, "7.4.1(6)")
             elif (
                 not back
                 and target.number not in reached
@@ -378,6 +395,18 @@ class _Transitions:
                 return True
             waiting += following
         return False
+
+    def _joined_twice(self, sources: list[int]) -> str:
+        """What to say of a step that stands in several joins: two STL one after the other join, so an empty step needs a rung."""
+        joins = [region for _, region in self._sections() if len(region.steps) > 1]
+        for region in joins:
+            steps = {step.number for step in region.steps}
+            others = [{step.number for step in other.steps} for other in joins if other is not region]
+            if any(steps & other and (steps | other) & set(sources) for other in others):
+                stl = " and ".join(f"STL {step}" for step in region.steps)
+                line = self.unit.instructions[region.opening].line
+                return f"{stl} in line {line} are a join; give an empty step a rung of its own, for example LD SM0, NOP"
+        return ""
 
     def _follows(self, target: int, sources: list[int], order: dict[int, int]) -> bool:
         return target >= self.initial_steps and order[target] == max(order.get(source, -1) for source in sources) + 1
