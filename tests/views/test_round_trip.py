@@ -1,11 +1,17 @@
 """Instruction list -> ladder or chart -> instruction list is the same program; so is program -> text -> program."""
 
+import json
+from pathlib import Path
+from xml.etree import ElementTree
+
 from hypothesis import HealthCheck, given, settings
 
 from ecsim.assembler import assemble
 from ecsim.assembler.printer import print_instructions, print_program
+from ecsim.errors import ProgramError
 from ecsim.views.flows import Flow, part_list, parts
 from ecsim.views.ladder import ladder
+from ecsim.views.listing import listing
 from ecsim.views.rungs import instruction_list, rungs
 from ecsim.views.sfc import chart
 
@@ -94,3 +100,30 @@ def test_a_tree_as_deep_as_a_program_is_long_comes_back():
     assert words(picture.instruction_list()) == as_written(program)
     assert "ANB" in picture.svg()
     assert "ANB" in str(picture)
+
+
+def case_programs():
+    """Every program of the conformance cases that compiles, once."""
+    for file in sorted((Path(__file__).parent.parent / "conformance").glob("*.json")):
+        for text in dict.fromkeys(case["il"] for case in json.loads(file.read_text(encoding="utf-8"))):
+            try:
+                yield assemble(text, "EC20")
+            except ProgramError:
+                continue
+
+
+def test_every_program_of_the_cases_comes_back_and_one_of_each_instruction_is_drawn():
+    drawn = set()
+    for program in case_programs():
+        picture = ladder(program)
+        assert words(picture.instruction_list()) == as_written(program)
+        assert words(chart(program).instruction_list()) == as_written(program)[: len(program.main.instructions)]
+        fresh = {i.mnemonic for i in program.instructions} - drawn
+        if fresh:
+            drawn |= fresh
+            same(program, assemble(print_program(program), "EC20"))
+            for shown in (picture.svg(), chart(program).svg()):
+                ElementTree.fromstring(shown)
+            assert [line for line in str(picture).splitlines() if "│" in line or "├" in line]
+            assert len(str(listing(program)).splitlines()) >= len(program.instructions)
+    assert len(drawn) > 200
