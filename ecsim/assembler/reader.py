@@ -127,7 +127,7 @@ class _Reader:
                 return "".join(pieces) + text[position:]
             start = opened.start()
             line_start = text.rfind("\n", 0, start) + 1
-            slashes = text.find("//", max(line_start, position), start)
+            slashes = text.find("//", max(line_start, position), start + 1)  # also in "//* ..."
             if slashes >= 0:
                 end = text.find("\n", start)
                 end = len(text) if end < 0 else end
