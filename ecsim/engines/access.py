@@ -2,7 +2,7 @@
 
 import sys
 from array import array
-from struct import Struct
+from struct import Struct, pack, unpack
 
 from ..devices import Bits, Constant, Device, Operand, Text
 from ..errors import OPERAND, RANGE, Fault
@@ -215,6 +215,7 @@ def functions(memory: Memory) -> dict[str, object]:
     """What generated code calls to reach memory where a plain list access is not enough; a bad number raises Fault(65)."""
     model, lists = memory.model, memory.lists
     first = 0 if model.high_word_first else 1
+    order = ">" if model.high_word_first else "<"  # of words, and so of bytes: each register is packed and unpacked the same way
     half = array("h", (0, 0))
 
     def at(values, number, low, high):
@@ -278,16 +279,18 @@ def functions(memory: Memory) -> dict[str, object]:
             raise Fault(RANGE)
         return values[number : number + count]
 
-    def span_dint(values, number, count, high):
+    def span_pairs(values, number, count, high, letter):
         words = span(values, number, 2 * count, high)
-        return [join(words[i + first], words[i + 1 - first]) for i in range(0, 2 * count, 2)]
+        return list(unpack(f"{order}{count}{letter}", pack(f"{order}{2 * count}h", *words)))
+
+    def span_dint(values, number, count, high):
+        return span_pairs(values, number, count, high, "i")
 
     def span_dword(values, number, count, high):
-        return [value & 0xFFFF_FFFF for value in span_dint(values, number, count, high)]
+        return span_pairs(values, number, count, high, "I")
 
     def span_real(values, number, count, high):
-        words = span(values, number, 2 * count, high)
-        return [real_from_words(words[i + first], words[i + 1 - first]) for i in range(0, 2 * count, 2)]
+        return span_pairs(values, number, count, high, "f")
 
     def span_bits(values, number, width, count, signed):
         if not 0 <= number <= len(values) - width * counted(count):
@@ -299,19 +302,14 @@ def functions(memory: Memory) -> dict[str, object]:
             raise Fault(RANGE)
         values[number : number + len(new)] = new
 
+    def put_span_pairs(values, number, new, high, guard, letter):
+        put_span(values, number, unpack(f"{order}{2 * len(new)}h", pack(f"{order}{len(new)}{letter}", *new)), high, guard)
+
     def put_span_dint(values, number, new, high, guard):
-        words = []
-        for value in new:
-            pair_of = split(value)
-            words += (pair_of[first], pair_of[1 - first])
-        put_span(values, number, words, high, guard)
+        put_span_pairs(values, number, new, high, guard, "i")
 
     def put_span_real(values, number, new, high, guard):
-        words = []
-        for value in new:
-            pair_of = words_from_real(value)
-            words += (pair_of[first], pair_of[1 - first])
-        put_span(values, number, words, high, guard)
+        put_span_pairs(values, number, [single(value) for value in new], high, guard, "f")
 
     def put_span_bits(values, number, width, new):
         if not 0 <= number <= len(values) - width * len(new):
@@ -331,7 +329,7 @@ def functions(memory: Memory) -> dict[str, object]:
         return [((value + 0x8000_0000) & 0xFFFF_FFFF) - 0x8000_0000 for value in values]
 
     local = dict(locals())
-    for name in ("memory", "model", "lists", "first", "half"):
+    for name in ("memory", "model", "lists", "first", "order", "half"):
         del local[name]
     return local | {
         "Fault": Fault,

@@ -185,17 +185,17 @@ class _Rung:
             following = instructions[place + 1] if place + 1 < len(instructions) else None
             self.again = following is not None and following.mnemonic not in ("MRD", "MPP")
             if instruction.definition.form in ("value", "command") and not instruction.definition.told:
-                self._value(instruction, following)
+                self._value(instruction, instructions[place + 1 :])
             else:
                 self.c.known.forget()
                 self._one(instruction)
                 self.c.known.forget()
 
-    def _value(self, instruction: Instruction, following: Instruction | None) -> None:
+    def _value(self, instruction: Instruction, following: list[Instruction]) -> None:
         flow = self._used()
         if self.last != (flow, len(self.lines)) or instruction.pulse >= 0:
             self.c.known.forget()
-        self._when(self.c.value(instruction, telling=following is None or not self.c.overrides(following, instruction)))
+        self._when(self.c.value(instruction, telling=not self.c.overridden(instruction, following)))
         if instruction.pulse >= 0:
             self.c.known.forget()
 

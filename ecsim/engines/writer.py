@@ -225,14 +225,20 @@ class Writer:
             self.known.forget()
         return lines
 
-    def overrides(self, second: Instruction, first: Instruction) -> bool:
-        """Whether an instruction sets all flags of the result of the one before it, whatever happens, without having looked at them."""
-        flags, derived = first.definition.flags, second.definition.flags
-        told = second.definition.told or second.pulse >= 0 or first.pulse >= 0 or second.definition.given or first.definition.given
-        if not flags or told or second.definition.form != "value" or not set(flags) <= set(derived) or self._may_fault(second):
+    def overridden(self, instruction: Instruction, following: list[Instruction]) -> bool:
+        """Whether the flags of a result are all set again by an instruction of the same flow before anything looks at them."""
+        flags = set(instruction.definition.flags)
+        if not flags or instruction.definition.given or instruction.pulse >= 0:
             return False
-        special = (self.model.special_bits, self.model.special_words)
-        return not any(getattr(operand, "area", "") in special for operand in second.operands)
+        special = {self.model.special_bits, self.model.special_words}
+        for later in following:
+            definition = later.definition
+            looks = set(definition.taken) & self.model.relays.keys() or any(getattr(o, "area", "") in special for o in later.operands)
+            if definition.form != "value" or definition.told or looks or any(spec.span for spec in definition.operands) or later.pulse >= 0:
+                return False
+            if flags <= set(definition.flags) - set(definition.given) and not self._may_fault(later):
+                return True
+        return False
 
     def _value(self, instruction: Instruction, flow: str) -> list[str]:
         definition = instruction.definition
@@ -339,7 +345,7 @@ class Writer:
         given = instruction.definition.given if self.telling else instruction.definition.flags
         flags = [flag for flag in instruction.definition.flags if flag not in given]
         relay = {flag: "{}[{}]".format(*self.model.flag(flag)) for flag in flags}
-        lines = [f"{relay['zero']} = {name} == 0"] if "zero" in relay else []
+        lines = [f"{relay['zero']} = {name} == {0.0 if kind is REAL else 0}"] if "zero" in relay else []
         out = [
             (relay[flag], test) for flag, test in (("carry", f"{name} > {kind.high}"), ("borrow", f"{name} < {kind.low}")) if flag in relay
         ]
@@ -347,7 +353,7 @@ class Writer:
             lines += [f"if {kind.low} <= {name} <= {kind.high}:", INDENT + " = ".join(target for target, _ in out) + " = False", "else:"]
             lines += [f"{INDENT}{target} = {test}" for target, test in out]
         elif "carry" in relay:
-            lines.append(f"{relay['carry']} = not {-REAL_LIMIT} <= {name} <= {REAL_LIMIT}")
+            lines += [f"if {-REAL_LIMIT} <= {name} <= {REAL_LIMIT}: {relay['carry']} = False", f"else: {relay['carry']} = True"]
         return lines
 
     # -- always and command ---------------------------------------------------------------------------------------
