@@ -5,7 +5,7 @@
 
 A mutant is a module with one operator exchanged, one constant off by one, one condition turned round, one statement or one
 column of a decorator taken away, and so on (`changes`). The cases of the mnemonics that reach the changed place run on the
-compiled engine in a process of their own; a case that fails, an exception or a run without end kills the mutant. What cannot even be
+compiled engine in a process of their own, those of the program's structure on the stepping engine too; a case that fails, an exception or a run without end kills the mutant. What cannot even be
 imported is no mutant. Survivors that no program can tell from the original stand in EQUIVALENT with the reason.
 
 Step counts, sections, areas and types are left alone: tests/instructions/test_table.py holds them against the manual.
@@ -22,6 +22,7 @@ import types
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import product
 from multiprocessing.connection import wait
 from pathlib import Path
 
@@ -36,7 +37,7 @@ SOURCES = ROOT / "ecsim" / "instructions"
 PAGE = ROOT / "docs" / "mutation.md"
 NO_CHAPTER = {"__init__", "define", "signature"}
 WORKERS = 2
-LIMIT_S = 60  # of the processor for all cases of a mutant; a run without end is noticed, too
+LIMIT_S = 20  # of the processor for all cases of a mutant; a run without end is noticed, too
 
 # Survivors that say the same as the original: how the table names them -> why no program can tell.
 EQUIVALENT: dict[str, str] = {}
@@ -209,11 +210,20 @@ def _nodes(node: ast.AST, path: tuple = (), holders: tuple[ast.AST, ...] = ()) -
         if name in ("returns", "annotation", "decorator_list"):
             continue
         for place, child in enumerate(value) if isinstance(value, list) else [(None, value)]:
-            text = isinstance(child, ast.Expr) and isinstance(child.value, ast.Constant)
-            if isinstance(child, ast.AST) and not text:
+            if isinstance(child, ast.AST) and not _of_the_table(node, child):
                 way, above = (*path, (name, place)), (*holders, node)
                 yield child, way, above
                 yield from _nodes(child, way, above)
+
+
+def _of_the_table(node: ast.AST, child: ast.AST) -> bool:
+    """Whether a part says what the table says: a docstring, steps, a section, a number in a row of names."""
+    if isinstance(child, ast.keyword):
+        return child.arg in ("steps", "section")
+    if isinstance(child, ast.Expr):
+        return isinstance(child.value, ast.Constant)
+    named = isinstance(node, ast.Tuple) and any(isinstance(part, ast.Constant) and isinstance(part.value, str) for part in node.elts)
+    return named and isinstance(child, ast.Constant) and isinstance(child.value, int)
 
 
 def _names(node: ast.AST) -> set[str]:
@@ -314,10 +324,11 @@ def noticed(mutant: Mutant, cases: list[dict]) -> str:
         install(mutant)
     except Exception:
         return "no import"
-    for case in cases:
+    engines = (False, True) if any(TABLE[name].form == "emitted" for name in mutant.mnemonics) else (False,)
+    for tracing, case in product(engines, cases):
         for model in case["models"]:
             try:
-                passed = run_case(case, model).passed
+                passed = run_case(case, model, tracing).passed
             except Exception as error:
                 return f"{case['id']}: {type(error).__name__}"
             if not passed:
