@@ -143,9 +143,11 @@ class _Reader:
                 return "".join(pieces) + text[position:start]
             after = text[match.end() : (text.find("\n", match.end()) + len(text) + 1) % (len(text) + 1)]
             alone = not text[line_start:start].strip() and not after.strip()
-            inner = match[0][2:-2].split("\n")
-            filler = "\n".join(f"// {part.strip()}" if alone and part.strip() else "" for part in inner)
-            pieces.append(text[position:start] + (filler if alone else " " + "\n" * (len(inner) - 1) + " "))
+            if alone:
+                filler = "\n".join(f"// {part.strip()}" if part.strip() else "" for part in match[0][2:-2].split("\n"))
+            else:
+                filler = re.sub(r"[^\n]", " ", match[0])  # as wide as it was: what stands behind keeps its column
+            pieces.append(text[position:start] + filler)
             position = match.end()
 
     def _line(self, words: list[str], comment: str, number: int) -> None:
