@@ -34,7 +34,7 @@ from .hardware.unit import Unit
 from .memory import Memory
 from .models import Model, get_model
 from .project import read_project
-from .values import BOOL
+from .values import BOOL, DataType
 
 LONGEST_NS = 5_000_000_000  # a program that takes longer is stopped (61) even where WDT or a watchdog of 0 would let it run
 
@@ -628,7 +628,9 @@ class Plc:
         device, kind = self.memory.parse(name, self._names)
         if device.area == "X":
             self._set_inputs(device, self.memory.fitting(device, kind, value))
-        elif not self._read_only(device):
+        elif self._read_only(device, kind):
+            raise EcsimError(f"{name} cannot be written: the system writes it")
+        else:
             self.memory.set(device, kind, value)
 
     get = __getitem__
@@ -689,6 +691,7 @@ class Plc:
             raise EcsimError(f"{name} is no input; signals go to X devices")
         return device.number
 
+    @alone
     def _drive(self, name: str, signal: Signal, bounce_ms: float) -> None:
         number = self._input(name)
         if bounce_ms:
@@ -701,10 +704,10 @@ class Plc:
         """What exceeds the frequencies that the counters can follow (8.1.4), in words."""
         return list(self.counters.warnings)
 
-    def _read_only(self, device: Device | Bits) -> bool:
-        """A write from outside to what the system writes is ignored (3.1.9)."""
-        fixed = {self.model.special_bits: self.model.read_only_relays, self.model.special_words: self.model.read_only_registers}
-        return device.number in fixed.get(device.area, ())
+    def _read_only(self, device: Device | Bits, kind: DataType) -> bool:
+        """Whether a device lies, with a part at least, where only the system writes (3.1.9)."""
+        length = 4 * device.digits if isinstance(device, Bits) else max(1, kind.words)
+        return not self.model.read_only(device.area).isdisjoint(range(device.number, device.number + length))
 
     @alone
     def force(self, name: str, value: int) -> None:
@@ -712,7 +715,7 @@ class Plc:
         device, kind = self.memory.parse(name, self._names)
         if isinstance(device, Bits) or (kind is not BOOL and kind.words != 1):
             raise EcsimError(f"{name}: one bit or one 16-bit register can be forced")
-        if self._read_only(device):
+        if self._read_only(device, kind):
             raise EcsimError(f"{device} cannot be forced: the system writes it")
         self.memory.force(device, kind, self.memory.fitting(device, kind, value))
         self._rebind()
