@@ -224,7 +224,7 @@ class Resolver:
 
     def _writable(self, device: Device | Bits, length: int, text: str) -> None:
         model = self.model
-        fixed = {model.special_bits: model.read_only_relays, model.special_words: model.read_only_registers}.get(device.area, ())
+        fixed = model.read_only(device.area)
         if any(number in fixed for number in range(device.number, device.number + length)):
             raise Refused(
                 f"{text} is read only",

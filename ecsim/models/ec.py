@@ -21,6 +21,16 @@ def _numbers(*runs: int | tuple[int, int]) -> frozenset[int]:
     return frozenset(n for run in runs for n in (range(run[0], run[1] + 1) if isinstance(run, tuple) else (run,)))
 
 
+def _others(writable: frozenset[int]) -> frozenset[int]:
+    """The special devices that only the system writes: all that the appendices do not tell to be written, the reserved ones too."""
+    return frozenset(range(256)) - writable
+
+
+# Appendices 1 and 2: what programs and tools may write.
+_RELAYS = _numbers((40, 47), (65, 68), 80, 81, (90, 97), (110, 113), (120, 123), 135, 136, (180, 182), 185, (200, 255))
+_RELAYS_EC10 = _RELAYS | _numbers((48, 56), 63, 64, 85, (172, 175), 178, 186)
+_REGISTERS = _numbers((50, 55), (66, 68), (80, 89), (111, 114), (121, 124), 130, (135, 137), (180, 184))
+_REGISTERS_EC10 = _REGISTERS | _numbers((131, 133), 138, 173, 175, 178)
 _BITS = frozenset({"X", "Y", "M", "S", "LM", "SM"})
 
 EC20 = Model(
@@ -44,8 +54,8 @@ EC20 = Model(
         "scan time": 30, "least scan time": 31, "greatest scan time": 32, "constant scan": 33, "watchdog": 34, "input filter": 35,
         "faulty module": 25, "clock": 100, **ec_fast.REGISTERS,
     },
-    read_only_relays=_numbers((0, 15), (20, 22), 82, 83, 114, 124, (140, 171), (190, 193), 196),
-    read_only_registers=_numbers((0, 5), (7, 12), (20, 26), (30, 35), 56, 57, (100, 106), 110, (115, 118), 120, (125, 128), 139, 172, 174, 191, 192),
+    read_only_relays=_others(_RELAYS),
+    read_only_registers=_others(_REGISTERS),
     limits={
         "steps": 12_000, "MC nesting": 7, "FOR nesting": 8, "CALL nesting": 6, "subroutines": 64, "labels": 128, "joined steps": 16,
         "flows": 20, "bit variables": 16, "word variables": 16, "global variables": 500, "name bytes": 8, "stack": 8, "waveforms": 100, "potentiometers": 2,
@@ -73,6 +83,8 @@ EC10 = replace(
     reff_ms=(0, 8, 16, 32, 64),
     instruction_ns=300,
     retained=("D", "M", "S", "C"),
+    read_only_relays=_others(_RELAYS_EC10),
+    read_only_registers=_others(_REGISTERS_EC10),
     type_code=10,
     step_surcharge=("M", 1536),  # 5.1.1: a contact on M1536 to M2047 is one step longer
     retention_limits={"ranges": 1, "bits": 320, "words": 180},

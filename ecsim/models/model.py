@@ -83,6 +83,10 @@ class Model:
         """The numbers of an area's special devices; none in most areas."""
         return range(self.first_special, self.areas[area].count) if area in (self.special_bits, self.special_words) else range(0)
 
+    def read_only(self, area: str) -> frozenset[int]:
+        """The numbers of an area's devices that only the system writes (3.1.9, 3.1.10)."""
+        return {self.special_bits: self.read_only_relays, self.special_words: self.read_only_registers}.get(area, frozenset())
+
     def flag(self, meaning: str) -> tuple[str, int]:
         """Area and number of a special relay by meaning."""
         return self.special_bits, self.relays[meaning]
