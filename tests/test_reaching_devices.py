@@ -126,3 +126,9 @@ def test_a_forced_device_stays_forced_through_a_power_cycle(plc):
     plc.unforce()
     plc.scan()
     assert (plc["Y0"], plc.forced) == (0, {})
+
+
+@pytest.mark.parametrize("name", ["SM0", "SM100", "SD20", "SD19:DINT", "K4SM32"])
+def test_what_the_system_writes_cannot_be_written_from_outside(plc, name):
+    with pytest.raises(EcsimError, match=f"{name} cannot be written: the system writes it"):
+        plc[name] = 0
