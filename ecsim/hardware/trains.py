@@ -12,7 +12,9 @@ HALF_US = 5_000_000  # half a period of 0.1 Hz
 
 @dataclass(frozen=True, slots=True)
 class Segment:
-    """`pulses` pulses (None without end) from `start` on, at `hertz` first, changing by `slope` Hz a second."""
+    """`pulses` pulses (None without end) from `start` on, at `hertz` first, changing by `slope` Hz a second; a constant
+    frequency is rounded to 0.1 Hz.
+    """
 
     start: int
     hertz: float
