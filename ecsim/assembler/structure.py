@@ -346,12 +346,14 @@ class _Transitions:
     def check(self) -> None:
         transitions = list(self._transitions())
         reached = {target.number for _, instruction, target, _ in transitions if instruction.mnemonic == "SET"}
+        order = {number: place for place, number in enumerate(self.steps)}
         links: dict[int, set[int]] = {}
         for region, instruction, target, _ in transitions:
-            if instruction.mnemonic == "SET":
-                for source in region.steps:
+            for source in region.steps:
+                if instruction.mnemonic == "SET" and order.get(target.number, len(order)) > order.get(
+                    source.number, -1
+                ):  # a SET that goes back is told once
                     links.setdefault(source.number, set()).add(target.number)
-        order = {number: place for place, number in enumerate(self.steps)}
         for region, instruction, target, section in transitions:
             if target.number not in self.steps:
                 continue

@@ -5,7 +5,9 @@ import pytest
 from ecsim.assembler import assemble
 
 
-@pytest.mark.parametrize("text", ["//* note\nLD X0\nOUT Y0", "LD X0 //* note\nOUT Y0", "LD X0 // (* note\nOUT Y0", "LD X0\nOUT Y0 // a /* b"])
+@pytest.mark.parametrize(
+    "text", ["//* note\nLD X0\nOUT Y0", "LD X0 //* note\nOUT Y0", "LD X0 // (* note\nOUT Y0", "LD X0\nOUT Y0 // a /* b"]
+)
 def test_a_line_comment_may_hold_the_begin_of_a_block_comment(text):
     assert [i.mnemonic for i in assemble(text, "EC20").instructions] == ["LD", "OUT"]
 
