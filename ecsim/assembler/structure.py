@@ -1,6 +1,5 @@
 """The structure of a unit: its rungs and regions, and the rules of chapters 5, 6.1 and 7 about them."""
 
-from ..devices import Device, number_text
 from .program import Instruction, Network, Region, Unit
 
 _LEAVES = {
@@ -426,17 +425,7 @@ class _Transitions:
 
     def _transitions(self):
         for section, region in self._sections():
-            for network in region.nodes:
-                if isinstance(network, Network):
-                    for instruction in self.unit.instructions[network.start : network.end]:
-                        if (
-                            instruction.mnemonic in ("SET", "OUT")
-                            and isinstance(instruction.operands[0], Device)
-                            and instruction.operands[0].area == "S"
-                        ):
-                            yield region, instruction, instruction.operands[0], section
-
-
-def region_text(kind: str, number: int) -> str:
-    """A region's name for people: "MC 0", "STL S20"."""
-    return f"STL S{number_text('S', number)}" if kind == "STL" else f"{kind} {number}" if kind == "MC" else kind
+            first = region.opening + len(region.steps)
+            for instruction in self.unit.instructions[first : region.closing]:
+                if instruction.mnemonic in ("SET", "OUT") and instruction.operands[0].area == "S":
+                    yield region, instruction, instruction.operands[0], section

@@ -141,9 +141,8 @@ class Compiler(Writer):
         return blocks
 
     def _region(self, region: Region, opened: str) -> Block:
-        outer, self.region = self.region, region
-        body = self.pack(self.blocks(region.nodes))
-        self.region = outer
+        with self.inside(region):
+            body = self.pack(self.blocks(region.nodes))
         inner = _statements(body.lines)
         if region.kind == "MC":
             clear = self.clear_lines(self.unit, region)
@@ -450,9 +449,8 @@ class _FlatUnit:
             lines += [f"{loop} = {rung.opened}", f"if {loop} <= 0: return @{end}@"]
             self._mark(f"body_{region.opening}")
             self.segments[-1].append(f"spend({cost})")
-        outer, c.region = c.region, region
-        self._nodes(region.nodes)
-        c.region = outer
+        with c.inside(region):
+            self._nodes(region.nodes)
         if region.kind == "FOR":
             self.segments[-1] += [f"{loop} -= 1", f"if {loop} > 0: return @body_{region.opening}@"]
         self._mark(end)

@@ -413,10 +413,9 @@ class _Builder(Writer):
         opening, position = self.stage, self.unit.instructions[region.opening].position
         made: dict[str, Callable] = {}
         body = self._control(None, position)
-        outer, self.region = self.region, region
         turns = self.turns
-        self._nodes(region.nodes)
-        self.region = outer
+        with self.inside(region):
+            self._nodes(region.nodes)
         closing = self.stage
         after = self._control(None)
         lists = self.engine.memory.lists

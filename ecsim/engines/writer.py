@@ -10,6 +10,7 @@ An `emitted` instruction of TABLE speaks to its writer in these verbs:
 
 import re
 from collections.abc import Iterator
+from contextlib import contextmanager
 
 from ..assembler.program import Instruction, Network, Program, Region, Unit, Variable
 from ..devices import Bits, Constant, Device, Operand
@@ -48,7 +49,7 @@ class Writer:
         self.can_fault = any(self._may_fault(i) for i in program.instructions)
         self.fault_flag = "{}[{}]".format(*self.model.flag("fault"))
         self.unit: Unit = program.main
-        self.region: Region | None = None
+        self.region: Region | None = None  # the step (STL) that is being written
         self.instruction: Instruction | None = None
 
     # -- what can go wrong --------------------------------------------------------------------------------------
@@ -133,7 +134,14 @@ class Writer:
 
     def _special(self, instruction: Instruction, word: str, flow: str) -> str:
         """What a function gets that is no operand."""
-        known = {"flow": flow, "machine": "machine", "now": "CLOCK[0]", "scan": "machine.scans", "state": f"E[{instruction.slot}]", "claim": str(instruction.slot)}
+        known = {
+            "flow": flow,
+            "machine": "machine",
+            "now": "CLOCK[0]",
+            "scan": "machine.scans",
+            "state": f"E[{instruction.slot}]",
+            "claim": str(instruction.slot),
+        }
         return known.get(word) or "{}[{}]".format(*self.model.flag(word))
 
     @staticmethod
@@ -417,9 +425,18 @@ class Writer:
 
     # -- coils, steps, calls --------------------------------------------------------------------------------------
 
+    @contextmanager
+    def inside(self, region: Region) -> Iterator[None]:
+        """While the inside of a region is written; a loop in a step belongs to the step."""
+        outer = self.region
+        if region.kind == "STL":
+            self.region = region
+        yield
+        self.region = outer
+
     @property
     def in_step(self) -> bool:
-        return self.region is not None and self.region.kind == "STL"
+        return self.region is not None
 
     def turn_lines(self, d: Device, on: bool) -> list[str]:
         """A bit set or reset."""
