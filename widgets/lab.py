@@ -16,7 +16,7 @@ from .chart import Chart
 from .history import Watch
 from .ladder import Ladder
 from .machine import Machine
-from .panel import Panel
+from .panel import Panel, Part
 from .rig import Rig, Terminals
 from .timers import Timers
 from .transport import Transport
@@ -66,11 +66,14 @@ class Lab(Panel):
         self.name = name
         title = title or re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(plant).__name__) if plant is not None else ""
         rig = Rig(plc, session, watch, terminals=terminals, picture=picture, controls=controls, title=title)
-        super().__init__(rig, [PARTS[key](rig) for key in parts_of(rig)])
+        super().__init__(rig)
         self._labs[name] = self
         plc.tracing = True
         if autostart:
             session.run()
+
+    def chosen(self) -> list[type[Part]]:
+        return [PARTS[key] for key in parts_of(self.rig)]
 
     @property
     def plc(self) -> Plc:
@@ -87,7 +90,7 @@ class Lab(Panel):
         there = parts_of(self.rig)
         if key not in there:
             raise ValueError(f"there is no panel {key!r} here; there are {', '.join(there)}")
-        return Panel(self.rig, [PARTS[key](self.rig)])
+        return Panel(self.rig, [PARTS[key]])
 
     def stop(self) -> None:
         """End the simulation; raises what went wrong inside it. The panels keep the last state."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from ecsim.views.ladder import Ladder as Drawing
 from ecsim.views.ladder import ladder
 
@@ -18,7 +20,8 @@ class Ladder(Part):
 
     def __init__(self, rig: Rig):
         super().__init__(rig)
-        self._drawn = self._draw(460)
+        self._drawn = self._draw(NARROWEST)
+        self.least = int(re.search(r' width="(\d+)', self._drawn[2])[1])  # the program may need more than was asked for
 
     def _draw(self, width: int) -> tuple[int, Drawing, str]:
         drawing = ladder(self.rig.program)
@@ -31,7 +34,7 @@ class Ladder(Part):
                 for instruction in unit.instructions[network.start : network.end]:
                     if instruction.mnemonic == "STL":
                         steps.setdefault(str(instruction.operands[0]), [unit.name, network.number])
-        return {"about": f"{self.rig.program.steps} steps", "steps": steps}
+        return {"about": f"{self.rig.program.steps} steps", "steps": steps, "least": self.least}
 
     def frame(self):
         _, drawing, svg = self._drawn

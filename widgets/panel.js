@@ -234,6 +234,7 @@ class View {
   }
   build() {
     const { parts = [], panels: layouts = {} } = this.page.layout;
+    for (const panel of Object.values(this.parts ?? {})) panel.close?.();
     this.parts = {};
     this.root.innerHTML = parts.length > 1 ? '<div class="lab"><div class="lab-a"></div><div class="lab-b"></div></div>' : '<div class="alone"></div>';
     const grid = this.root.firstElementChild;
@@ -246,7 +247,7 @@ class View {
     }
     if (parts.length > 1) {
       set(grid, "data-chart", parts.includes("chart") ? "" : null);
-      columns(grid);
+      this.parts.columns = { close: columns(grid, layouts.ladder?.least), apply() {} };
     }
     this.apply(this.page.state);
     this.rest(this.page.dead);
@@ -288,14 +289,20 @@ class View {
   }
 }
 
-// The lab's columns follow its own width, not the window's: in a cell, beside a notebook, on a wall.
-function columns(grid) {
+// The lab's columns follow its own width, not the window's: in a cell, beside a notebook, on a wall. The ladder is never
+// narrower than its program needs, else its coils would be out of sight.
+const [CHART_PX, GAP_PX, UNIT_PX, LADDER_PX] = [344, 16, 776, [476, 640]];
+function columns(grid, least = 0) {
+  const ladder = Math.max(LADDER_PX[0], Math.min(least + 2, LADDER_PX[1]));
+  grid.style.setProperty("--ec-ladder", `${ladder}px`);
   const fit = () => {
     const width = grid.clientWidth;
-    grid.dataset.columns = width >= 1300 ? "wide" : width >= 780 ? "pair" : "one";
+    grid.dataset.columns = width >= UNIT_PX + GAP_PX + ladder ? "wide" : width >= CHART_PX + GAP_PX + ladder ? "pair" : "one";
   };
-  new ResizeObserver(fit).observe(grid);
+  const sizes = new ResizeObserver(fit);
+  sizes.observe(grid);
   fit();
+  return () => sizes.disconnect();
 }
 
 const pages = new Map();

@@ -6,6 +6,7 @@ import contextlib
 import threading
 import uuid
 from collections.abc import Iterable, Sequence
+from contextvars import Context, copy_context
 from importlib import resources
 from typing import Any
 
@@ -51,6 +52,9 @@ class Part:
             raise ValueError(f"the {self.key} panel knows no {verb!r}")
         method(**values)
 
+    def close(self) -> None:
+        """Nobody looks at this part any more."""
+
 
 class Panel(anywidget.AnyWidget):
     """Shows some parts of a rig. Frames are made in the session's thread; inputs go into the session's queue."""
@@ -66,16 +70,38 @@ class Panel(anywidget.AnyWidget):
     face = traitlets.Dict().tag(sync=True)
     last = traitlets.Dict().tag(sync=True)
 
-    def __init__(self, rig: Rig, parts: Sequence[Part], **traits: Any):
+    def __init__(self, rig: Rig, kinds: Sequence[type[Part]] = (), **traits: Any):
         self.rig = rig
-        self.parts = {part.key: part for part in parts}
+        self.kinds = kinds
+        self.parts: dict[str, Part] = {}
         self.stream = Stream()
         self._lock = threading.Lock()
         self._sent: dict[str, dict[str, Any]] = {}
         self._later: threading.Timer | None = None
+        self._asked_in: Context | None = None
+        self._make_parts()
         super().__init__(page=uuid.uuid4().hex, face=self.describe(), last=self.moment(), **traits)
         self.on_msg(self._receive)
         self._leave = rig.session.observe(lambda session: self.show())
+
+    def chosen(self) -> Sequence[type[Part]]:
+        """Which parts are shown of the program that is loaded."""
+        return self.kinds
+
+    def _make_parts(self) -> None:
+        for part in self.parts.values():
+            part.close()
+        self.parts = {kind.key: kind(self.rig) for kind in self.chosen()}
+        self._of = self.rig.program
+
+    def _follow_program(self) -> bool:
+        """Make the parts anew when another program has been loaded; says whether it was so."""
+        if self.rig.program is not self.rig.plc.program:
+            self.rig.read_program()
+        if self._of is self.rig.program:
+            return False
+        self._make_parts()
+        return True
 
     def describe(self) -> dict[str, Any]:
         """The static description of all parts."""
@@ -91,9 +117,12 @@ class Panel(anywidget.AnyWidget):
             self._show_later()
             return
         with self.rig.session.held(), self._lock:
+            renewed = self._follow_program()
             now = self.moment()
             message: dict[str, Any] = {"state": now, "full": True}
-            if not full:
+            if renewed:
+                message["layout"] = self.describe()
+            elif not full:
                 changed = {part: changes(self._sent.get(part, {}), entries) for part, entries in now.items()}
                 message = {"state": {part: entries for part, entries in changed.items() if entries}}
             pulsed = {key: keys for key, part in self.parts.items() if (keys := part.pulsed())}
@@ -101,7 +130,16 @@ class Panel(anywidget.AnyWidget):
                 message["pulsed"] = pulsed
             if message["state"] or pulsed:
                 self._sent = now
-                self.send(self.stream.count() | message)
+                self._answer(self.stream.count() | message)
+
+    def _answer(self, message: dict[str, Any]) -> None:
+        """Send as an answer to the page's last message, from whatever thread.
+
+        The kernel hands what comes over a comm to the shell that last sent over it. Frames that were sent as part of a
+        cell would bring the page's clicks behind that cell; as answers they keep them in the page's own shell.
+        """
+        context = self._asked_in.copy() if self._asked_in is not None else copy_context()
+        context.run(self.send, message)
 
     def _show_later(self) -> None:
         """While nothing runs no other frame follows: the last state must not be the one that was left out."""
@@ -117,6 +155,7 @@ class Panel(anywidget.AnyWidget):
         self.show()
 
     def _receive(self, widget: object, message: dict[str, Any], buffers: object) -> None:
+        self._asked_in = copy_context()
         if "part" in message:
             values = {key: value for key, value in message.items() if key not in ("part", "do")}
             self.parts[message["part"]].receive(message["do"], values)
@@ -128,7 +167,7 @@ class Panel(anywidget.AnyWidget):
             if "hello" in message:
                 self.show(full=True)
             else:
-                self.send({"n": self.stream.number})
+                self._answer({"n": self.stream.number})
 
     def __repr__(self) -> str:
         return f"<Panel {', '.join(self.parts)}: {self.rig.plc.model.name}>"
@@ -137,4 +176,7 @@ class Panel(anywidget.AnyWidget):
         """Leave the session and close the view."""
         with contextlib.suppress(AttributeError):
             self._leave()
+        parts, self.parts = self.parts, {}
+        for part in parts.values():
+            part.close()
         super().close()

@@ -12,6 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
 
+from ecsim.assembler.program import Instruction
 from ecsim.devices import Bits, Constant, number_text
 from ecsim.errors import EcsimError
 
@@ -82,29 +83,33 @@ class Rig:
         self.wiring = terminals.wiring if terminals else {}
         self.picture, self.title = picture, title
         self.controls = dict(controls or {})
-        self.program = plc.program
-        self.instructions = self.program.instructions if self.program else []
+        self.refused = ""  # why the last thing asked for was not done
+        self.recent: deque[int] = deque(maxlen=RECENT)
+        watch.watchers.append(self._note_scan)
+        self.read_program()
+
+    def read_program(self) -> None:
+        """Look up what the panels need of the program that is loaded now."""
+        self.program = self.plc.program
+        self.instructions = self.program.instructions
         self._names = {device: point.name for device, point in self.wiring.items()}
         self._comments = {device: point.what for device, point in self.wiring.items()}
-        for variable in self.program.variables.values() if self.program else ():
+        for variable in self.program.variables.values():
             self._names[str(variable.device)] = variable.name
             self._comments.setdefault(str(variable.device), variable.comment)
-        units = self.program.units if self.program else []
         self._titles = {
             unit.instructions[index].position: title
-            for unit in units
+            for unit in self.program.units
             for index, title in unit.titles.items()
             if index < len(unit.instructions)
         }
         self.inputs, self.outputs = self._points("X"), self._points("Y")
         self._places: dict[str, tuple[str, int]] = {}
-        self.refused = ""  # why the last thing asked for was not done
-        self.recent: deque[int] = deque(maxlen=RECENT)
-        self.charted = {str(i.operands[0]): i for i in reversed(self.instructions) if i.mnemonic == "STL"}  # the first STL of each step
-        self.charted = dict(reversed(self.charted.items()))
-        self._times = StepTimes()
-        self._times_of: tuple[int, Any] = (0, None)
-        watch.watchers.append(self._note_scan)
+        self.charted: dict[str, Instruction] = {}  # step -> its first STL
+        for instruction in self.instructions:
+            if instruction.mnemonic == "STL":
+                self.charted.setdefault(str(instruction.operands[0]), instruction)
+        self._times, self._times_of = StepTimes(), (0, None)
 
     # -- what there is ------------------------------------------------------------------------------------------
 

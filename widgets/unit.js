@@ -47,7 +47,7 @@ panels.unit = (place, layout, page, view) => {
     const lamp = (point, here, at) => `
       <span class="lampcell" role="img" data-testid="lamp-${point.device}" data-lamp="${point.device}" data-row="${here}" data-col="${at}" tabindex="-1">${LAMP}<span class="no">${point.device.slice(1)}</span></span>`;
     const status = (word, at) => `
-      <span class="lampcell status" role="img" data-testid="${word.toLowerCase()}" data-status="${word}" style="grid-column:${at}"><svg class="lamp" width="14" height="14" viewBox="0 0 14 14" aria-hidden="true"><circle cx="7" cy="7" r="5.5"/></svg><span class="no word">${word}</span></span>`;
+      <span class="lampcell status" role="img" data-testid="lamp-${word}" data-status="${word}" style="grid-column:${at}"><svg class="lamp" width="14" height="14" viewBox="0 0 14 14" aria-hidden="true"><circle cx="7" cy="7" r="5.5"/></svg><span class="no word">${word}</span></span>`;
     const window_ = [
       ...rows(inputs, count).map((list) => ["IN", list, false]),
       ...rows(outputs, count).map((list, at, all) => ["OUT", list, at === all.length - 1]),

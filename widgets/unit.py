@@ -57,6 +57,9 @@ class Unit(Part):
         for device in list(self._releases):
             self._release(device)
 
+    def close(self):
+        self.rig.watch.watchers.remove(self._watch)
+
     def _device(self, device):
         if device not in self.points:
             raise ValueError(f"the unit has no {device!r}")

@@ -141,13 +141,19 @@ class Notebook:
         """What the kernel prints for a piece of code."""
         return self.page.evaluate(EVALUATE, code)
 
+    def errors(self):
+        """What cells have raised."""
+        cells = """() => [...window.jupyterapp.shell.currentWidget.content.widgets].flatMap((cell) =>
+            (cell.model.sharedModel.outputs ?? []).filter((output) => output.output_type === 'error').map((output) => `${output.ename}: ${output.evalue}`))"""
+        return self.page.evaluate(cells)
+
     def sources(self):
         """The text of each cell."""
         cells = "() => [...window.jupyterapp.shell.currentWidget.content.widgets].map((cell) => cell.model.sharedModel.getSource())"
         return self.page.evaluate(cells)
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def open_notebook(server, browser):
     """Open a notebook with a fresh kernel: the session is ready and connected when this returns."""
     pages = []

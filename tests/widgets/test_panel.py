@@ -21,7 +21,7 @@ class Clock:
 @pytest.fixture
 def panel(rig, monkeypatch):
     """Run control, unit and timers of a rig; `sent` has the messages, `tell` is the page's voice."""
-    made = Panel(rig, [Transport(rig), Unit(rig), Timers(rig)])
+    made = Panel(rig, [Transport, Unit, Timers])
     made.sent, made.clock = [], Clock()
     made.stream = Stream(made.clock)
     monkeypatch.setattr(made, "send", made.sent.append)
@@ -113,6 +113,16 @@ def test_the_last_state_follows_although_its_frame_was_too_early(panel):
     assert panel.sent[-1]["state"]["unit"] == {"X1": 1}
 
 
+def test_a_program_that_is_loaded_while_it_runs_gets_a_new_description(panel):
+    panel.tell(hello=True)
+    pass_time(panel, 1)
+    panel.rig.post(lambda plc: plc.load("LD X0\nTON T7 20"))
+    message = panel.sent[-1]
+    assert [row["device"] for row in message["layout"]["panels"]["timers"]["rows"]] == ["T7"]
+    assert message["full"] is True
+    assert message["state"]["timers"]["T7.preset"] == 20
+
+
 def test_a_closed_panel_leaves_the_session(panel):
     panel.tell(hello=True)
     panel.close()
@@ -123,7 +133,7 @@ def test_a_closed_panel_leaves_the_session(panel):
 
 def test_a_panel_may_show_one_part_alone(make_rig, shuttle, picture):
     rig = make_rig(shuttle, picture=picture, title="Shuttle")
-    panel = Panel(rig, [Machine(rig)])
+    panel = Panel(rig, [Machine])
     assert panel.face["panels"]["machine"]["title"] == "Shuttle"
     assert 'id="EC0-part"' in panel.face["panels"]["machine"]["svg"]
     assert panel.last["machine"] == {"part:transform": "translate(0 0)", "X0:class": ""}
