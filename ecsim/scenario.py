@@ -8,6 +8,7 @@ from typing import Any
 
 from .assembler import assemble
 from .errors import EcsimError, ProgramError
+from .hardware.modules import Module
 from .memory import Memory
 from .models import get_model
 from .plc import Plc, SystemBlock
@@ -120,6 +121,9 @@ def run_case(case: dict[str, Any], model: str, tracing: bool = False) -> Verdict
     try:
         plc = Plc(model, scan_ms=case.get("scan_ms", 10), system=_system(case, model))
         plc.tracing = tracing
+        for place, buffers in case.get("modules", {}).items():  # special modules by place, with what their buffers hold
+            plc.modules[int(place)] = module = Module(len(buffers))
+            module.write(0, buffers)
         plc.load(program)
         plc.run()
         return Verdict(name, model, tuple(run_steps(plc, case["steps"])))

@@ -20,7 +20,7 @@ FILES = sorted(CONFORMANCE.glob("*.json"))
 MNEMONICS = {row["mnemonic"].split()[0] for row in FACTS}  # "SET Sxx" is a SET
 WAITING = MNEMONICS - set(TABLE)
 
-CASE_KEYS = set("id section mnemonic models il scan_ms steps compile_error source confidence note system_block data_block".split())
+CASE_KEYS = set("id section mnemonic models il scan_ms steps compile_error source confidence note system_block data_block modules".split())
 STEP_KEYS = set("set scans ms expect expect_range error action note pulses quadrature serial".split())
 
 
