@@ -1,9 +1,12 @@
 """ecsim: Emerson EC10 and EC20 PLCs, simulated in exact time."""
 
+from pathlib import Path
+
 from .assembler import Program, assemble
 from .errors import EcsimError, ProgramError
 from .help import help  # noqa: A004 - the public name of the act
 from .plc import Plc, SystemBlock
+from .project import read_project
 from .record import Recording
 from .session import Session
 from .views.listing import listing
@@ -14,6 +17,7 @@ __all__ = ["EcsimError", "Plc", "Program", "ProgramError", "Recording", "Session
 Program.face = lambda program: listing(program)._repr_html_()
 
 
-def compile(text: str, model: str = "EC20") -> Program:  # noqa: A001 - the public name of the act
-    """The program that `text` spells, for a model; raises ProgramError with all errors."""
-    return assemble(text, model)
+def compile(program: "str | Path", model: str | None = None) -> Program:  # noqa: A001 - the public name of the act
+    """The program of a text, an .il file or a project folder; raises ProgramError with all errors. EC20 unless the project says otherwise."""
+    text, name, chosen = read_project(program)
+    return assemble(text, model or chosen.get("model", "EC20"), name)

@@ -54,6 +54,9 @@ class Memory:
         self.lists["E"] = []
         self.generation = 0  # counts the replacements of lists, for those who hold them
 
+    def __repr__(self) -> str:
+        return f"<Memory of an {self.model.name}>"
+
     def slots(self, count: int) -> None:
         """Make room for what `count` instructions remember, and forget what there was."""
         self.lists["E"][:] = [False] * count

@@ -32,8 +32,8 @@ def _text(path: Path) -> str:
         raise EcsimError(f"there is no file {path}; give the path of an .il file or a project folder") from None
     except UnicodeDecodeError as error:
         raise EcsimError(f"{path} is no UTF-8 text (byte {error.start}); save it as UTF-8") from None
-    except OSError as error:
-        raise EcsimError(f"{path} cannot be read: {error.strerror}") from None
+    except (OSError, ValueError) as error:
+        raise EcsimError(f"{path} cannot be read: {getattr(error, 'strerror', None) or error}") from None
 
 
 def _folder(folder: Path) -> str:

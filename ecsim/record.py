@@ -13,15 +13,18 @@ if TYPE_CHECKING:
     import numpy
 
 
+KEEP = 200_000  # changes; an hour of a signal that changes in every second scan of 10 ms
+
+
 class Recording:
     """The values of some devices of a Plc after each scan. `names` may be devices or the program's names.
 
-    Only changes are kept, each with its time: a second in which nothing happens costs nothing.
+    Only changes are kept, each with its time: a second in which nothing happens costs nothing. Of very many the oldest go.
     """
 
     def __init__(self, plc: Plc, names: Iterable[str]):
         self.plc = plc
-        self.names = list(names)
+        self.names = [names] if isinstance(names, str) else list(names)
         self._places: list[tuple[str, int]] = []
         for name in self.names:
             device, kind = plc.memory.parse(name, plc._names)
@@ -54,6 +57,8 @@ class Recording:
             flat = [value for group in values for value in group]
             self.times.append(self.plc.clock[0])
             self.rows.append(tuple(int(flat[place]) for place in self._order))
+            if len(self.times) > KEEP:
+                del self.times[: KEEP // 4], self.rows[: KEEP // 4]
 
     def forget(self, time_us: int) -> None:
         """Drop what was noted after a moment (after a step back)."""

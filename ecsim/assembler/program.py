@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 from ..devices import Device, Operand
+from ..errors import EcsimError
 from ..instructions import Definition
 from ..models import Model
 from ..values import DataType
@@ -31,6 +32,9 @@ class Instruction:
 
     def __str__(self) -> str:
         return " ".join((self.spelled or self.mnemonic, *self.written))
+
+    def __repr__(self) -> str:
+        return f"<Instruction {self.position}: {self}>"
 
 
 @dataclass(slots=True)
@@ -88,6 +92,10 @@ class Unit:
         """The variables that a CALL gives, in order."""
         return [variable for variable in self.variables.values() if variable.role != "TEMP"]
 
+    def __repr__(self) -> str:
+        count, networks = len(self.instructions), len(self.networks)
+        return f"<Unit {self.name}, {count} instruction{'s' * (count != 1)} in {networks} network{'s' * (networks != 1)}>"
+
 
 @dataclass
 class Program:
@@ -118,8 +126,11 @@ class Program:
         return {str(variable.device): variable.name for variable in self.variables.values()}
 
     def unit(self, name: str) -> Unit:
-        """The unit of that name, in any case."""
-        return next(unit for unit in self.units if unit.name.upper() == name.upper())
+        """The unit of that name, in any case; raises EcsimError when there is none."""
+        for unit in self.units:
+            if unit.name.upper() == name.upper():
+                return unit
+        raise EcsimError(f"the program has no unit {name!r}; it has {', '.join(unit.name for unit in self.units)}")
 
     def __repr__(self) -> str:
         return f"<Program {self.model.name}, {len(self.units)} unit{'s' if len(self.units) > 1 else ''}, {self.steps} steps>"

@@ -493,7 +493,8 @@ class Writer:
         return f"({''.join(f'{area}[:], ' for area in self.model.local_areas)})"
 
     def _blank_locals(self) -> list[str]:
-        return [f"{area}[:] = [0] * {self.model.areas[area].count}" for area in self.model.local_areas]
+        areas = [self.model.areas[name] for name in self.model.local_areas]
+        return [f"{area.name}[:] = [{'False' if area.kind == 'bit' else '0'}] * {area.count}" for area in areas]
 
     def exit_lines(self, callee: Unit, arguments: tuple[Operand, ...], caller: Unit) -> list[str]:
         """A call's end: results fetched, the caller's LM and V put back (cleared in the main program, 3.1.12), results stored."""

@@ -48,6 +48,9 @@ class Definition:
     counted: str | None = None  # which of the model's limits a program's instructions of this kind count towards
     occupies: Callable | None = None  # (model, operands) -> the numbers of the inputs X0 to X7 that it needs for itself (8.5)
 
+    def __repr__(self) -> str:
+        return f"<Definition of {self.mnemonic}, {self.section}>"
+
     @property
     def title(self) -> str:
         """The first sentence of the docstring."""
