@@ -78,7 +78,9 @@ class Rack(Unit):
     def __getitem__(self, place: int) -> Module:
         if place not in self.modules:
             known = ", ".join(map(str, sorted(self.modules)))
-            raise EcsimError(f"there is no special module in place {place!r}; " + (f"there are some in {known}" if known else "the rack is empty"))
+            raise EcsimError(
+                f"there is no special module in place {place!r}; " + (f"there are some in {known}" if known else "the rack is empty")
+            )
         return self.modules[place]
 
     def __delitem__(self, place: int) -> None:

@@ -1,7 +1,7 @@
 """6.8: peripherals: special modules, potentiometers, the input filter, immediate refresh, the EEPROM."""
 
-from ..hardware.eeprom import WRITE_US
 from ..errors import NO_BUFFER, NO_MODULE, OPERAND, RANGE, Fault
+from ..hardware.eeprom import WRITE_US
 from ..values import join, split
 from .define import command
 

@@ -97,7 +97,7 @@ class OperandSpec:
         if self.span is None or isinstance(self.span, int):
             return self.span or 1
         try:
-            return eval(self.span.strip("{}"), {"__builtins__": {}, "min": min, "max": max}, values)  # noqa: S307 - text of TABLE
+            return eval(self.span.strip("{}"), {"__builtins__": {}, "min": min, "max": max}, values)
         except NameError:
             return None
 
