@@ -458,6 +458,7 @@ class Writer:
     def _erasures(self, instruction: Instruction) -> list[tuple[str, ...]]:
         """The statements that clear each destination of one instruction."""
         definition = instruction.definition
+        self.known.forget()
         if definition.assigns:  # the bit of a word: executed without flow; one that cannot be reached needs no clearing
             lines = self.result_lines(instruction, "False")
             return [("try:", *indented(lines), "except Fault:", f"{INDENT}pass") if self._may_fault(instruction) else (*lines,)]
