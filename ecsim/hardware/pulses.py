@@ -156,8 +156,9 @@ class PulseOutputs(Unit):
 
     def restart(self, now: int) -> None:
         for axis in self.axes:
-            axis.claim, axis.clearing, axis.free = None, 0, -1
-            self._halt(axis, now)
+            axis.claim, axis.home, axis.clearing, axis.free = None, None, 0, -1
+            if axis.segments:  # otherwise its terminal is an output like others
+                self._halt(axis, now)
 
     # -- time ---------------------------------------------------------------------------------------------------
 
