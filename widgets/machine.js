@@ -3,6 +3,7 @@
 panels.machine = (place, layout, page) => {
   const { section, body, sub } = frame(place, { title: layout.title, sub: "machine", key: "machine" });
   section.classList.add("mach");
+  body.classList.add("scroll");
   const drawing = new Drawing(body, layout.svg);
   return {
     apply(changes) {

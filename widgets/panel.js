@@ -242,7 +242,7 @@ class View {
       const place = document.createElement("div");
       place.className = `area area-${part}`;
       if (part === "transport" || parts.length === 1) grid.prepend(place);
-      else grid.querySelector(part === "chart" || part === "ladder" ? ".lab-b" : ".lab-a").append(place);
+      else grid.querySelector(part === "chart" || part === "timers" ? ".lab-b" : ".lab-a").append(place);
       this.parts[part] = panels[part](place, layouts[part] ?? {}, this.page, this);
     }
     if (parts.length > 1) {
@@ -291,13 +291,12 @@ class View {
 
 // The lab's columns follow its own width, not the window's: in a cell, beside a notebook, on a wall. The ladder is never
 // narrower than its program needs, else its coils would be out of sight.
-const [CHART_PX, GAP_PX, UNIT_PX, LADDER_PX] = [344, 16, 776, [476, 640]];
+const [CHART_PX, GAP_PX, UNIT_PX, SIDE_PX, LADDER_PX] = [344, 16, 776, 520, 476];
 function columns(grid, least = 0) {
-  const ladder = Math.max(LADDER_PX[0], Math.min(least + 2, LADDER_PX[1]));
-  grid.style.setProperty("--ec-ladder", `${ladder}px`);
+  const ladder = Math.max(LADDER_PX, least + 2);
   const fit = () => {
     const width = grid.clientWidth;
-    grid.dataset.columns = width >= UNIT_PX + GAP_PX + ladder ? "wide" : width >= CHART_PX + GAP_PX + ladder ? "pair" : "one";
+    grid.dataset.columns = width >= UNIT_PX + GAP_PX + SIDE_PX ? "wide" : width >= CHART_PX + GAP_PX + ladder ? "pair" : "one";
   };
   const sizes = new ResizeObserver(fit);
   sizes.observe(grid);

@@ -10,7 +10,7 @@ panels.timers = (place, layout, page) => {
   const row = (one) => `
     <tr data-device="${one.device}" data-testid="row-${one.device}" data-state="off">
       <td>${contact}</td><td class="mono dev">${one.device}</td><td class="nm" title="${escaped(one.name)}">${escaped(one.name)}</td><td class="mono dim kind">${one.kind}</td>
-      <td class="num val"><b data-testid="${one.device}">0</b></td><td class="num dim preset"></td><td class="bar">${gauge()}</td>
+      <td class="num val"><b data-testid="${one.device}">0</b></td><td class="num dim preset"${one.base ? ` data-base="${escaped(one.base)}"` : ""}></td><td class="bar">${gauge()}</td>
       <td class="num dim base">${escaped(one.base)}</td><td class="say"></td><td class="mono dim used">${escaped(one.steps)}</td></tr>`;
   const group = (word, about) => `<tr class="group"><th colspan="10" scope="rowgroup">${word} <span>${about}</span></th></tr>`;
   const of = (kind, total) => {
@@ -75,7 +75,7 @@ panels.timers = (place, layout, page) => {
         group("Active steps", steps.length ? "time in the step, against the usual time" : "none") +
         steps.map(([device, name, , , , used]) => `
           <tr data-device="${device}"><td>${step}</td><td class="mono dev">${device}</td><td class="nm" title="${escaped(name)}">${escaped(name)}</td><td class="mono dim kind">STL</td>
-          <td class="num val"><b></b></td><td class="num dim preset"></td><td class="bar">${gauge("step")}</td><td class="num dim base">s</td><td class="say"></td><td class="mono dim used">${escaped(used)}</td></tr>`).join("");
+          <td class="num val"><b></b></td><td class="num dim preset"></td><td class="bar">${gauge("step")}</td><td class="num dim base">s</td><td class="say"><span class="scans"></span><span class="usual"></span></td><td class="mono dim used">${escaped(used)}</td></tr>`).join("");
     }
     for (const [device, , elapsed_us, usual_us, scans] of steps) {
       const line = tail.querySelector(`tr[data-device="${device}"]`);
@@ -84,7 +84,8 @@ panels.timers = (place, layout, page) => {
       draw(line.querySelector(".gauge"), elapsed_us, usual_us ?? 0, false, false);
       set(line.querySelector(".goal"), "class", "goal soft");
       set(line.querySelector(".goal"), "d", usual_us ? "M299 1v16" : "");
-      write(line.querySelector(".say"), `${number(scans)} ${scans === 1 ? "scan" : "scans"}${usual_us ? `, usually ${seconds(usual_us, 2)} s` : ""}`);
+      write(line.querySelector(".scans"), `${number(scans)} ${scans === 1 ? "scan" : "scans"}`);
+      write(line.querySelector(".usual"), usual_us ? `, usually ${seconds(usual_us, 2)} s` : "");
     }
   }
 

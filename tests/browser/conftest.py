@@ -61,10 +61,8 @@ class Server:
 
 @pytest.fixture(scope="session")
 def server(root, tmp_path_factory):
-    """JupyterLab on a copy of the notebooks; nothing of the person's own settings has a say in it."""
+    """JupyterLab on an empty folder; nothing of the person's own settings has a say in it."""
     folder, home = tmp_path_factory.mktemp("notebooks"), tmp_path_factory.mktemp("jupyter")
-    for notebook in (root / "notebooks").glob("*.ipynb"):
-        shutil.copy(notebook, folder)
     places = {
         name: str(home / name.lower())
         for name in (
@@ -154,15 +152,17 @@ class Notebook:
 
 
 @pytest.fixture(scope="session")
-def open_notebook(server, browser):
-    """Open a notebook with a fresh kernel: the session is ready and connected when this returns."""
+def open_notebook(root, server, browser):
+    """Open a copy of a notebook, each with a kernel of its own: the session is ready and connected when this returns."""
     pages = []
 
     def open_it(name, width=1280, height=900):
+        copy = f"{len(pages)}-{name}"
+        shutil.copy(root / "notebooks" / name, server.folder / copy)
         page = browser.new_page(viewport={"width": width, "height": height})
         page.set_default_timeout(60_000)
         pages.append(page)
-        page.goto(f"{server.address}/lab/tree/{name}?token={server.token}&reset")
+        page.goto(f"{server.address}/lab/tree/{copy}?token={server.token}&reset")
         page.wait_for_function(CONNECTED)
         return Notebook(page)
 
