@@ -97,7 +97,7 @@ class Session:
         self._last_steps: tuple | None = None
 
     def _scan(self) -> None:
-        """The plant moves under the outputs for the time of one scan, then the PLC scans once."""
+        """The PLC scans once, then the plant moves under its outputs for the time of that scan."""
         plc = self.plc
         if plc.program is not self._program or plc.memory.generation != self._generation:
             if plc.program is not self._program:

@@ -57,8 +57,8 @@ EC20 = Model(
     read_only_relays=_others(_RELAYS),
     read_only_registers=_others(_REGISTERS),
     limits={
-        "steps": 12_000, "MC nesting": 7, "FOR nesting": 8, "CALL nesting": 6, "subroutines": 64, "labels": 128, "joined steps": 16,
-        "flows": 20, "bit variables": 16, "word variables": 16, "global variables": 500, "name bytes": 8, "stack": 8, "waveforms": 100, "potentiometers": 2,
+        "steps": 12_000, "MC nesting": 7, "FOR nesting": 8, "CALL nesting": 6, "subroutines": 64, "joined steps": 16,
+        "flows": 20, "bit variables": 16, "word variables": 16, "global variables": 500, "stack": 8, "waveforms": 100, "potentiometers": 2,
     },
     filter_inputs=0o20,
     filter_ms=10,
