@@ -22,7 +22,10 @@ def read_project(program: str | Path) -> tuple[str, str, dict]:
 def _is_path(text: object) -> bool:
     if not isinstance(text, str) or "\n" in text or not text.strip():
         return False
-    return text.strip().lower().endswith(".il") or ((("/" in text or "\\" in text) and "//" not in text) and " " not in text.strip())
+    commented = "//" in text and " " in text.strip()  # a rung with a comment, which may speak of a file
+    if text.strip().lower().endswith(".il"):
+        return not commented
+    return ("/" in text or "\\" in text) and "//" not in text and " " not in text.strip()
 
 
 def _text(path: Path) -> str:

@@ -4,6 +4,7 @@ import asyncio
 import random
 import threading
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import pytest
 
@@ -221,7 +222,8 @@ def test_the_way_back_leads_through_the_same_states(make, engine, plant):
         if chance.random() < 0.2:
             session.set("X5", chance.randint(0, 1))
         if chance.random() < 0.1:
-            session.post(lambda plc, value=chance.randint(0, 99): plc.__setitem__("D7", value))
+            value = chance.randint(0, 99)
+            session.post(lambda plc, value=value: plc.__setitem__("D7", value))
         if chance.random() < 0.05:
             session.plant_on = not session.plant_on
         if chance.random() < 0.05 and not session.plant_on:
@@ -425,7 +427,7 @@ def test_what_is_due_is_not_lost_between_turns(make, clock):
     session = make(speed=1.0)
     turns = turning(session)
     for _ in range(1_000):
-        clock.now += 0.00331
+        clock.now += 0.003315
         next(turns)
     assert session.plc.scans == 331
 
@@ -484,7 +486,7 @@ def test_observers_are_called_thirty_times_a_second_at_most(make, clock):
         clock.now += 0.002
         next(turns)
     assert 55 <= len(calls) <= 61
-    assert min(later - earlier for earlier, later in zip(calls, calls[1:], strict=False)) >= 1 / 30
+    assert min(later - earlier for earlier, later in pairwise(calls)) >= 1 / 30
 
 
 # -- where there are no threads -----------------------------------------------------------------------------------
