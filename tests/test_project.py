@@ -53,7 +53,7 @@ def test_a_folder_of_another_model_is_refused(folder):
 
 
 def test_a_missing_file_is_named():
-    with pytest.raises(EcsimError, match="there is no file nowhere/press.il; give the path of an .il file or a project folder"):
+    with pytest.raises(EcsimError, match=r"there is no file nowhere/press\.il; give the path of an \.il file or a project folder"):
         Plc().load("nowhere/press.il")
 
 
