@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 
+from . import __version__
 from .assembler import assemble
 from .errors import EcsimError, ProgramError
 from .help import help as help_on
@@ -29,6 +30,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="ecsim", description="A simulator of Emerson EC10 and EC20 PLCs.")
+    parser.add_argument("--version", action="version", version=f"ecsim {__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     cases = commands.add_parser("cases", help="run conformance cases", description="Run conformance cases from JSON files.")
     cases.add_argument("files", nargs="+", type=Path, metavar="FILE")

@@ -116,6 +116,8 @@ def run_case(case: dict[str, Any], model: str, tracing: bool = False) -> Verdict
         program = assemble(case["il"], model)
     except ProgramError as error:
         return Verdict(name, model) if case.get("compile_error") else Verdict(name, model, reason=str(error))
+    except EcsimError as error:
+        return Verdict(name, model, reason=str(error))
     if case.get("compile_error"):
         return Verdict(name, model, reason="the program was accepted, expected a compile error")
     try:
@@ -157,12 +159,33 @@ def load_cases(path: str | Path) -> list[dict[str, Any]]:
         cases = json.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
         raise EcsimError(f"there is no file {path}") from None
+    except OSError as error:
+        raise EcsimError(f"{path} cannot be read: {error.strerror}") from None
     except (json.JSONDecodeError, UnicodeDecodeError) as error:
         raise EcsimError(f"{path} is no JSON: {error}") from None
     if not isinstance(cases, list):
         raise EcsimError(f"{path} holds no array of cases")
     for place, case in enumerate(cases, 1):
-        missing = {"id", "models", "il"} - set(case) if isinstance(case, dict) else {"id"}
-        if missing:
-            raise EcsimError(f"{path}: case {place} lacks {', '.join(sorted(missing))}")
+        wrong = _shape(case)
+        if wrong:
+            raise EcsimError(f"{path}: case {place} {wrong}")
     return cases
+
+
+_SHAPES = {"id": (str, "a text"), "models": (list, "a list of models"), "il": (str, "a text"), "steps": (list, "a list of steps")}
+
+
+def _shape(case: Any) -> str:
+    """What is wrong with the form of a case, "" when nothing is."""
+    if not isinstance(case, dict):
+        return "is no object"
+    needed = [key for key in _SHAPES if key != "steps" or not case.get("compile_error")]
+    missing = [key for key in needed if key not in case]
+    if missing:
+        return f"lacks {', '.join(missing)}"
+    for key, (kind, words) in _SHAPES.items():
+        if key in case and not isinstance(case[key], kind):
+            return f"has {case[key]!r:.40} for {key}; expected {words}"
+    if any(not isinstance(step, dict) for step in case.get("steps", [])):
+        return "has a step that is no object"
+    return ""
