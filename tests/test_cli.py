@@ -70,8 +70,8 @@ def test_verdicts_are_given_as_json(cases, capsys):
     [
         ("{", "is no JSON: Expecting property name"),
         ("{}", "holds no array of cases"),
-        ('[{"id": "a"}]', "case 1 lacks il, models"),
-        ('["a"]', "case 1 lacks id"),
+        ('[{"id": "a"}]', "case 1 lacks models, il, steps"),
+        ('["a"]', "case 1 is no object"),
     ],
 )
 def test_a_broken_file_of_cases_ends_with_2(cases, capsys, content, says):
