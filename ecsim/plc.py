@@ -418,7 +418,7 @@ class Plc:
 
         In STOP the program rests, inputs and time go on.
         """
-        if not isinstance(count, Integral) or count < 0:
+        if (type(count) is not int and not isinstance(count, Integral)) or count < 0:  # the first test is the quick one
             raise EcsimError(f"{count!r} scans; give a whole number from 0 on")
         with self.lock:
             for _ in range(count):
