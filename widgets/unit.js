@@ -241,14 +241,16 @@ panels.unit = (place, layout, page, view) => {
   document.addEventListener("pointerdown", outside);
 
   // 16 columns need 816 px; below that the unit takes rows of eight.
-  const sizes = new ResizeObserver(() => {
+  const fit = () => {
     const now = place.clientWidth >= 760;
     if (!place.clientWidth || now === wide) return;
     wide = now;
     close();
     build(wide ? 16 : 8);
-  });
+  };
+  const sizes = new ResizeObserver(fit);
   sizes.observe(place);
+  requestAnimationFrame(fit);
 
   return {
     apply(changes, now) {
