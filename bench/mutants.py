@@ -482,7 +482,7 @@ def main() -> int:
     if stale:
         print("\nin EQUIVALENT, but no survivors:", *stale, sep="\n  ")
     if given.write:
-        PAGE.write_text("\n".join([*HEAD, *lines, ""]), encoding="utf-8")
+        PAGE.write_text("\n".join([*HEAD, "", *lines, ""]), encoding="utf-8")
     return 1 if stale else 0
 
 
