@@ -422,8 +422,12 @@ class Plc:
             raise EcsimError(f"{count!r} scans; give a whole number from 0 on")
         with self.lock:
             for _ in range(count):
-                self._one_scan()
-            self._asked = self.clock[0]
+                self.turn()
+
+    def turn(self) -> None:
+        """One whole scan, for those who hold `lock` already."""
+        self._one_scan()
+        self._asked = self.clock[0]
 
     @alone
     def advance(self, ms: float) -> None:

@@ -110,7 +110,7 @@ class Session:
     def _step(self) -> None:
         plc = self.plc
         before = plc.clock[0]
-        plc.scan()
+        plc.turn()
         if self._plant_on:
             now = plc.clock[0]
             driven = self._driven(plc.memory.lists["Y"])
