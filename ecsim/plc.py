@@ -589,11 +589,9 @@ class Plc:
         self.stop()
 
     def _our_bug(self, error: Exception) -> Exception:
-        line = 0
-        frames, engine = error.__traceback__, self._engine
+        line, frames = 0, error.__traceback__
         while frames is not None:
-            if isinstance(engine, CompiledEngine) and frames.tb_frame.f_code.co_filename == engine.filename:
-                line = engine.line_of(frames.tb_lineno)
+            line = self._engine.line_in(frames.tb_frame.f_code, frames.tb_lineno) or line
             frames = frames.tb_next
         return RuntimeError(f"a bug of ecsim met in the program's line {line or 'unknown'}: {type(error).__name__}: {error}")
 

@@ -7,6 +7,7 @@ jumps (CJ) is written flat instead: segments that tell which one follows. The lo
 import linecache
 import re
 from dataclasses import dataclass, field
+from types import CodeType
 
 from ..assembler.program import Instruction, Network, Program, Region, Unit
 from ..devices import Device, Operand
@@ -500,8 +501,10 @@ class CompiledEngine:
         """Execute another unit once (an interrupt program)."""
         return self.units[unit.upper()]() == HALTED
 
-    def line_of(self, generated: int) -> int:
-        """The student's line that a line of the generated source came from."""
+    def line_in(self, code: CodeType, generated: int) -> int:
+        """The student's line that a line of generated code came from, 0 for code of others."""
+        if code.co_filename != self.filename:
+            return 0
         for text in reversed(self.source.split("\n")[:generated]):
             if text.strip().startswith("# line "):
                 return int(text.strip()[7:])

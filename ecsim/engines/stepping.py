@@ -6,12 +6,13 @@ a block of them ends in a control, which tells the next block. The walk can be s
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from types import CodeType
 
 from ..assembler.program import Instruction, Network, Program, Region, Unit
 from ..devices import Bits, Device, Operand, number_text
 from ..instructions.signature import OperandSpec
 from ..memory import Memory
-from ..values import BOOL, INT
+from ..values import BOOL, INT, DataType
 from .trace import Trace, Write
 from .writer import Writer, indented
 
@@ -47,6 +48,7 @@ class SteppingEngine:
         self.length = len(program.instructions)
         self.trace = Trace.blank(self.length)
         self.recording = False
+        self.filename = f"<ecsim {program.model.name} stepping {id(self):x}>"
         self.bind()
 
     def bind(self) -> None:
@@ -58,11 +60,16 @@ class SteppingEngine:
         self.stages: list[Stage] = []
         self.bare: list[tuple[list[Callable], Callable]] = []  # of each stage what a walk without recording needs
         self.entries: dict[str, int] = {}
+        self.lines: dict[str, int] = {}  # generated function -> the student's line
         _Builder(self).build()
 
     def scan(self) -> bool:
         """Execute the main program once; true when it stopped the PLC."""
         return self.run(self.program.main.name)
+
+    def line_in(self, code: CodeType, generated: int) -> int:
+        """The student's line that a place in generated code came from, 0 for code of others."""
+        return self.lines.get(code.co_name, 0) if code.co_filename == self.filename else 0
 
     def run(self, unit: str) -> bool:
         """Execute a unit once, recorded when `recording` is set."""
@@ -105,9 +112,9 @@ class SteppingEngine:
                     else:
                         flow = (flow and closed) if op.join == "AND" else (flow or closed)
                 elif op.targets:
-                    before = self._values(op.targets)
+                    before = self.values(op.targets)
                     flow = op.run(flow)
-                    self._note(op, before)
+                    self.note(op.position, before)
                 else:
                     flow = op.run(flow)
                 flows[op.position] = bool(flow)
@@ -118,7 +125,7 @@ class SteppingEngine:
             place = stage.control(flow)
         self.halted = place == HALT
 
-    def _values(self, targets) -> list[tuple[str, str, int, int]]:
+    def values(self, targets) -> list[tuple[str, str, int, int]]:
         """The present values of what an instruction may write, as (list, area, number, value)."""
         lists = self.memory.lists
         found = []
@@ -129,13 +136,14 @@ class SteppingEngine:
             found += [(name, area, n, lists[name][n]) for n in range(number, number + length) if 0 <= n < len(lists[name])]
         return found
 
-    def _note(self, op: Op, before) -> None:
+    def note(self, position: int, before) -> None:
+        """Record what has changed since `values`, as written by the instruction at a position."""
         lists = self.memory.lists
         for name, area, number, old in before:
             new = lists[name][number]
             if new != old:
                 suffix = ":BOOL" if name in ("TB", "CB") else ""
-                self.trace.writes.append(Write(op.position, f"{area}{number_text(area, number)}{suffix}", int(old), int(new)))
+                self.trace.writes.append(Write(position, f"{area}{number_text(area, number)}{suffix}", int(old), int(new)))
 
 
 class _Builder(Writer):
@@ -158,7 +166,7 @@ class _Builder(Writer):
             self._unit(unit)
         lists = self.engine.memory.lists
         namespace = {**engine.services, **self.globals, **lists, "STACK": engine.stack, "KEPT": engine.kept}
-        exec(compile("\n".join(self.text), f"<ecsim {self.model.name} stepping>", "exec"), namespace)  # numbers and names of ours only
+        exec(compile("\n".join(self.text), engine.filename, "exec"), namespace)  # numbers and names of ours only
         for give in self.wanted:
             give(namespace)
         engine.bare = [([op.run for op in stage.ops], stage.control) for stage in engine.stages]
@@ -224,7 +232,7 @@ class _Builder(Writer):
 
     def _op(self, lines: list[str]) -> Op:
         """One more instruction in this stage, as a function of the flow."""
-        op = Op(self.instruction.position, None, targets=self._targets())
+        op = Op(self.instruction.position, None, targets=self._targets(self.instruction))
         self._define("flow", lines, lambda function: setattr(op, "run", function))
         self.stage.ops.append(op)
         self.done = True
@@ -234,6 +242,7 @@ class _Builder(Writer):
         name = f"op_{self.names}"
         self.names += 1
         self.text += [f"def {name}({parameters}):", *indented(lines)]
+        self.engine.lines[name] = self.instruction.line
         self.wanted.append(lambda namespace: give(namespace[name]))
 
     def _when(self, lines: list[str]) -> None:
@@ -267,27 +276,40 @@ class _Builder(Writer):
         lines, _ = self.always(instruction, "flow", "flow")
         self._op([*lines, "return flow"])
 
-    def _targets(self) -> tuple:
-        """(list, area, first number, index register, length) of all that the instruction may change."""
-        instruction, found = self.instruction, []
-        definition = instruction.definition
-        if definition.mnemonic == "CALL":
-            return ()
+    def _targets(self, instruction: Instruction) -> tuple:
+        """(list, area, first number, index register, length) of all that an instruction may change."""
+        definition, found = instruction.definition, []
         for spec, operand in self.targets(instruction):
-            index = None if operand.index is None else (operand.index_area, operand.index)
-            if isinstance(operand, Bits):
-                found.append((operand.area, operand.area, operand.number, index, self._length(instruction, spec, 4 * operand.digits)))
-                continue
-            count = self._length(instruction, spec, max(1, spec.type.words))
+            count = self._length(instruction, spec, 4 * operand.digits if isinstance(operand, Bits) else max(1, spec.type.words))
             both = operand.area in ("T", "C") and (spec.kind in ("TIMER", "COUNTER", "DCOUNTER") or definition.resets)
-            if both or spec.type is not BOOL:
-                found.append((operand.area, operand.area, operand.number, index, count))
-            if both or spec.type is BOOL:
-                found.append((self.access.bits(operand.area), operand.area, operand.number, index, count))
+            found += self._places(spec.type, operand, count, both)
         found += [(*(self.model.flag(flag)[:1] * 2), self.model.flag(flag)[1], None, 1) for flag in definition.flags]
         if self.in_step and definition.transition_steps and instruction.operands[0].area == "S" and definition.mnemonic != "RST":
             found += [("S", "S", step.number, None, 1) for step in self.region.steps]
         return tuple(found)
+
+    def _places(self, kind: DataType, operand: Device | Bits, count: int | Callable[[], int], both: bool = False) -> list[tuple]:
+        """The targets that one operand stands for; `both` value and contact of a timer or counter."""
+        index = None if operand.index is None else (operand.index_area, operand.index)
+        rest = (operand.area, operand.number, index, count)
+        if isinstance(operand, Bits):
+            return [(operand.area, *rest)]
+        names = [operand.area] if both or kind is not BOOL else []
+        return [(name, *rest) for name in (*names, *([self.access.bits(operand.area)] if both or kind is BOOL else []))]
+
+    def _noted(self, made: dict[str, Callable], name: str, position: int, targets: tuple) -> Callable[[], None]:
+        """A function of `made` that no instruction of its own executes; what it writes is recorded for the one at a position."""
+        engine = self.engine
+
+        def run() -> None:
+            if engine.recording:
+                before = engine.values(targets)
+                made[name]()
+                engine.note(position, before)
+            else:
+                made[name]()
+
+        return run
 
     def _length(self, instruction: Instruction, spec: OperandSpec, unit: int) -> int | Callable[[], int]:
         """How many list elements an operand covers whose values take `unit` each."""
@@ -391,8 +413,18 @@ class _Builder(Writer):
         self._define("", [*self.guard_faults(enter, arguments), "return False"], lambda function: made.__setitem__("enter", function))
         self._define("", [*self.guard_faults(leave, arguments), "return"], lambda function: made.__setitem__("leave", function))
 
+        results = [
+            target
+            for variable, operand in zip(callee.parameters, arguments, strict=True)
+            if variable.role in ("OUTPUT", "IN_OUT")
+            for target in self._places(
+                variable.type, operand, 4 * operand.digits if isinstance(operand, Bits) else max(1, variable.type.words)
+            )
+        ]
+        finish = self._noted(made, "leave", self.instruction.position, tuple(results))
+
         def back(_) -> int:
-            made["leave"]()
+            finish()
             return after
 
         def control(flow) -> int:
@@ -424,12 +456,14 @@ class _Builder(Writer):
             return
         clear = self.clear_lines(self.unit, region)
         self._define("", clear or ["pass"], lambda function: made.__setitem__("clear", function))
+        cleared = [i for i in self.unit.instructions[region.opening + 1 : region.closing] if i.definition.cleared]
+        erase = self._noted(made, "clear", position, tuple(target for i in cleared for target in self._targets(i)))
         if region.kind == "MC":
 
             def guard(flow) -> int:
                 if flow:
                     return body
-                made["clear"]()
+                erase()
                 return after
 
             opening.control = guard
@@ -443,7 +477,7 @@ class _Builder(Writer):
                 return body
             if was[slot]:
                 was[slot] = False
-                made["clear"]()
+                erase()
             return after
 
         def enter_alone(flow) -> int:
@@ -452,7 +486,7 @@ class _Builder(Writer):
                 return body
             if was[slot]:
                 was[slot] = False
-                made["clear"]()
+                erase()
             return after
 
         opening.control = enter if others else enter_alone
