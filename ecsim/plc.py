@@ -759,12 +759,15 @@ class Plc:
             "watched": dict(self.timers.watched),
             "plc": (self.clock[0], self.scans, self.running, self._first, self.system_error, self._asked, self._spent_ns, self._noted_us),
             "forced": self.memory.forces(),
+            "program": self.program,
             "trace": copy.copy(self.trace),
         }
 
     @alone
     def restore(self, snapshot: dict[str, Any]) -> None:
-        """Go back to a snapshot."""
+        """Go back to a snapshot, also to what was forced then; raises EcsimError for one of another program."""
+        if snapshot["program"] is not self.program:
+            raise EcsimError("the snapshot was taken with another program; load that one first")
         self.memory.hold(snapshot["forced"])
         self._rebind()
         self.memory.restore(snapshot["memory"])
@@ -776,7 +779,7 @@ class Plc:
             "plc"
         ]
         trace = snapshot["trace"]
-        if trace is not None and SteppingEngine in self._engines and len(trace.flow) == len(self.program.instructions):
+        if trace is not None and SteppingEngine in self._engines:
             self._engines[SteppingEngine].trace = trace
 
     def in_use(self, areas: Iterable[str]) -> list[Device]:

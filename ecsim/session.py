@@ -60,6 +60,8 @@ class Session:
         self.error: Exception | None = None
         self.late = 0  # how often the wall clock ran away
         self.log: deque[StepChange] = deque(maxlen=LOG)
+        self._steps: list[int] = []
+        self._last_steps: tuple | None = None  # their values after the last scan
         self.step_since: dict[str, int] = {}  # active step -> simulated time in us at which it began
         self._lock = plc.lock  # what a cell does to the Plc itself waits for the scan, too
         self._wake = threading.Event()
@@ -92,20 +94,25 @@ class Session:
         self._last_driven: tuple | None = None
         self._last_sensors: dict[str, int] | None = None
         self._inputs = {name: device.number for name, device in places if device.area == "X"}
-        self._steps = [device.number for device in plc.in_use(("S",))]
-        self._step_values = itemgetter(*self._steps, self._steps[0]) if self._steps else None
-        self._last_steps: tuple | None = None
+        steps = [device.number for device in plc.in_use(("S",))]
+        if steps != self._steps:
+            self._steps, self._last_steps = steps, None
+        self._step_values = itemgetter(*steps, steps[0]) if steps else None
 
     def _scan(self) -> None:
         """The PLC scans once, then the plant moves under its outputs for the time of that scan."""
         plc = self.plc
         if plc.program is not self._program or plc.memory.generation != self._generation:
-            if plc.program is not self._program:
-                self.history.clear()
-                self.step_since.clear()
-            self._bind()
+            self._look()
         self.history.tick(plc.scans)
         self._step()
+
+    def _look(self) -> None:
+        """Find things again after another program was loaded (there is no way back across that) or a device was forced."""
+        if self.plc.program is not self._program:
+            self.history.clear()
+            self.step_since.clear()
+        self._bind()
 
     def _step(self) -> None:
         plc = self.plc
@@ -258,6 +265,7 @@ class Session:
         self.pause()
         with self._lock:
             self._drain()
+            self._look()
             done = self.history.go(self.plc.scans - scans, self._step)
         self._show()
         return done
@@ -268,7 +276,10 @@ class Session:
             self._actions.clear()
             self.history.clear()
             self._bind()
-            self._put((*self._initial[:3], {}, []))
+            snapshot, plant, on, *_ = self._initial
+            if snapshot["program"] is not self.plc.program:
+                snapshot = self.plc.snapshot()  # the time of another program does not come back
+            self._put((snapshot, plant, on, {}, []))
             if self.recording is not None:
                 self.recording.forget(-1)
             self.plc.power_cycle()

@@ -186,3 +186,40 @@ def test_next_step_gives_up_at_once_where_no_step_can_change(stop):
 def test_a_wrong_speed_is_refused_from_the_beginning(speed):
     with pytest.raises(EcsimError, match="factor above 0"):
         Session(running_plc(), speed=speed)
+
+
+def test_there_is_no_way_back_across_another_program():
+    session = Session(running_plc(), name="another program")
+    session.scan(10)
+    session.plc.load("LD X0\nEU\nOUT Y0\nLD X1\nEU\nCTU C0 5")
+    session.plc.run()
+    assert not session.back(3)
+    session.scan(3)
+    assert session.plc.scans == 13
+
+
+def test_reset_begins_anew_with_the_program_that_is_loaded_now():
+    plant = Belt()
+    session = Session(running_plc(), plant=plant, name="reset another program")
+    session.scan(10)
+    session.plc.load("LD SM1\nEU\nSET Y1")
+    session.reset()
+    session.scan()
+    assert (plant.position, session.plc["Y1"]) == (1, 1)
+
+
+def test_a_snapshot_of_another_program_is_refused():
+    plc = running_plc()
+    snapshot = plc.snapshot()
+    plc.load("LD X0\nEU\nOUT Y0")
+    with pytest.raises(EcsimError, match="taken with another program"):
+        plc.restore(snapshot)
+
+
+def test_forcing_a_device_does_not_begin_the_active_step_again():
+    session = Session(running_plc("LD SM1\nSET S0\nSTL S0\nOUT Y0\nLD X0\nRST S0\nRET"), name="forced in a step")
+    session.scan(5)
+    since, changes = dict(session.step_since), list(session.log)
+    session.post(lambda plc: plc.force("Y5", 1))
+    session.scan(5)
+    assert (session.step_since, list(session.log)) == (since, changes)
