@@ -627,13 +627,18 @@ class Plc:
         return self.memory.get(*self.memory.parse(name, self._names))
 
     def __setitem__(self, name: str, value: Any) -> None:
-        device, kind = self.memory.parse(name, self._names)
+        device, kind, value = self._check_write(name, value)
         if device.area == "X":
-            self._set_inputs(device, self.memory.fitting(device, kind, value))
-        elif self._read_only(device, kind):
-            raise EcsimError(f"{name} cannot be written: the system writes it")
+            self._set_inputs(device, value)
         else:
             self.memory.set(device, kind, value)
+
+    def _check_write(self, name: str, value: Any) -> tuple[Device | Bits, DataType, int | float]:
+        """What a write from outside means; raises EcsimError when it cannot be done."""
+        device, kind = self.memory.parse(name, self._names)
+        if self._read_only(device, kind):
+            raise EcsimError(f"{name} cannot be written: the system writes it")
+        return device, kind, self.memory.fitting(device, kind, value)
 
     get = __getitem__
 
@@ -642,7 +647,9 @@ class Plc:
         return [*self.program.names().values(), *map(str, self.in_use(tuple(self.model.areas)))]
 
     def set(self, values: dict[str, Any]) -> None:
-        """Write several devices."""
+        """Write several devices; when one of them refuses, none is written."""
+        for name, value in values.items():
+            self._check_write(name, value)
         for name, value in values.items():
             self[name] = value
 

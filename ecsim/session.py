@@ -262,6 +262,8 @@ class Session:
 
     def back(self, scans: int = 1) -> bool:
         """Pause, and go back by so many scans; false when that is further than is remembered."""
+        if scans < 1:
+            raise EcsimError(f"back by {scans!r} scans; give a number from 1 on")
         self.pause()
         with self._lock:
             self._drain()
@@ -324,8 +326,7 @@ class Session:
 
     def set(self, device: str, value: Any) -> None:
         """Write a device, or put a level on an input, before the next scan. A bad name or value raises here."""
-        found, kind = self.plc.memory.parse(device, self.plc._names)
-        self.plc.memory.fitting(found, kind, value)
+        self.plc._check_write(device, value)
         self.post(lambda plc: plc.__setitem__(device, value))
 
     def _do(self, action: Callable[[Plc], Any]) -> None:

@@ -132,3 +132,12 @@ def test_a_forced_device_stays_forced_through_a_power_cycle(plc):
 def test_what_the_system_writes_cannot_be_written_from_outside(plc, name):
     with pytest.raises(EcsimError, match=f"{name} cannot be written: the system writes it"):
         plc[name] = 0
+
+
+def test_several_writes_are_done_all_or_none(plc):
+    with pytest.raises(EcsimError, match="EC20 has no Y400"):
+        plc.set({"D0": 5, "X3": 1, "Y400": 1})
+    with pytest.raises(EcsimError, match="SM0 cannot be written"):
+        plc.set({"D0": 5, "X3": 1, "SM0": 0})
+    plc.scan()
+    assert (plc["D0"], plc["X3"]) == (0, 0)

@@ -223,3 +223,11 @@ def test_forcing_a_device_does_not_begin_the_active_step_again():
     session.post(lambda plc: plc.force("Y5", 1))
     session.scan(5)
     assert (session.step_since, list(session.log)) == (since, changes)
+
+
+def test_a_session_refuses_at_once_what_the_plc_would_refuse_later():
+    session = Session(running_plc(), name="refusing")
+    with pytest.raises(EcsimError, match="SM0 cannot be written"):
+        session.set("SM0", 0)
+    with pytest.raises(EcsimError, match="back by 0 scans"):
+        session.back(0)
