@@ -270,8 +270,9 @@ def write(lines: list[str]) -> None:
 
 def conveyor(scans: int = 20_000, repeats: int = 5) -> list[str]:
     """The pallet-lift conveyor with its plant, as the lab runs it: simulated seconds in one second of the host."""
-    from ecsim.session import Session
     from ecsim_exercises.conveyor import Conveyor
+
+    from ecsim.session import Session
 
     solution = ROOT / "exercises" / "conveyor" / "solution.il"
     simulated = scans * SCAN_MS / 1000
