@@ -6,7 +6,7 @@ from .assembler import Program, assemble
 from .errors import EcsimError, ProgramError
 from .help import help  # noqa: A004 - the public name of the act
 from .plc import Plc, SystemBlock
-from .project import read_project
+from .project import own_lines, read_project
 from .record import Recording
 from .session import Session
 from .views.listing import listing
@@ -20,4 +20,5 @@ Program.face = lambda program: listing(program)._repr_html_()
 def compile(program: "str | Path", model: str | None = None) -> Program:  # noqa: A001 - the public name of the act
     """The program of a text, an .il file or a project folder; raises ProgramError with all errors. EC20 unless the project says otherwise."""
     text, name, chosen = read_project(program)
-    return assemble(text, model or chosen.get("model", "EC20"), name)
+    with own_lines(program):
+        return assemble(text, model or chosen.get("model", "EC20"), name)

@@ -8,11 +8,10 @@ from dataclasses import asdict
 from pathlib import Path
 
 from . import __version__
-from .assembler import assemble
+from . import compile as compile_program
 from .errors import EcsimError, ProgramError
 from .help import help as help_on
 from .models import MODELS
-from .project import read_project
 from .scenario import load_cases, run_case
 
 
@@ -69,9 +68,8 @@ def _cases(options: argparse.Namespace) -> int:
 
 
 def _check(options: argparse.Namespace) -> int:
-    text, name, chosen = read_project(options.program)
     try:
-        program = assemble(text, options.model or chosen.get("model", "EC20"), name)
+        program = compile_program(options.program, options.model)
     except ProgramError as error:
         for problem in error.problems:
             print(problem)

@@ -33,7 +33,7 @@ from .hardware.timers import Timers
 from .hardware.unit import Unit
 from .memory import Memory
 from .models import Model, get_model
-from .project import read_project
+from .project import own_lines, read_project
 from .values import BOOL, DataType
 
 LONGEST_NS = 5_000_000_000  # a program that takes longer is stopped (61) even where WDT or a watchdog of 0 would let it run
@@ -148,11 +148,9 @@ class Plc:
         system: SystemBlock | None = None,
     ):
         self.model = get_model(model)
-        if scan_ms is not None:
-            _within("scan_ms (None to model it)", scan_ms, 0.001, 60_000)
         self.scan_ms = scan_ms
         self.system = replace(system or SystemBlock(), **({} if input_filter_ms is None else {"input_filter_ms": input_filter_ms}))
-        self.system.check(self.model)
+        self._check_settings(scan_ms, self.system)
         input_filter_ms = self.model.filter_ms if self.system.input_filter_ms is None else self.system.input_filter_ms
         self.lock = threading.RLock()  # a scan in progress has it, and so has what must not come between: load, force, run ...
         self.memory = Memory(self.model)
@@ -193,7 +191,6 @@ class Plc:
         self._spent_ns = self._program_ns = 0  # what this scan's program has taken; what it takes without loops
         self._watchdog_ns = self._limit_ns = self.system.watchdog_ms * 1_000_000
         self._noted_us = 0
-        self._fixed_us = 0 if scan_ms is None else max(round(scan_ms * 1000), self.system.constant_scan_ms * 1000)
         self._first = True
         self._names: dict[str, Device] = {}
         self._special = self.memory.lists[self.model.special_bits], self.memory.lists[self.model.special_words]
@@ -212,9 +209,24 @@ class Plc:
             "placed": self.memory.placed,
             "machine": self,
         }
+        self._settle(scan_ms, self.system)
         self._init_special(power_up=True)
         self._restart_units()
         self.load("")
+
+    def _check_settings(self, scan_ms: float | None, system: SystemBlock) -> None:
+        """Raise EcsimError for what this model cannot be set to."""
+        if scan_ms is not None:
+            _within("scan_ms (None to model it)", scan_ms, 0.001, 60_000)
+        system.check(self.model)
+
+    def _settle(self, scan_ms: float | None, system: SystemBlock) -> None:
+        """Take over the period of a scan and the system block."""
+        self.scan_ms, self.system = scan_ms, system
+        self._fixed_us = 0 if scan_ms is None else max(round(scan_ms * 1000), system.constant_scan_ms * 1000)
+        if system.input_filter_ms is not None:
+            self.inputs.usual_us = round(system.input_filter_ms * 1000)
+            self.inputs.set_filter(self.inputs.usual_us)
 
     def _start_value(self, where: str, area: str, name: str, value: Any) -> None:
         """Raise EcsimError unless the data block or the output table can hold an entry."""
@@ -229,7 +241,8 @@ class Plc:
     def load(self, program: "str | Path | Program") -> Program:
         """Download a program: its text, the path of an .il file or project folder, or a Program. A running PLC is stopped first.
 
-        A program that does not compile raises ProgramError and leaves the loaded one as it is, running if it ran.
+        A program that does not compile raises ProgramError and leaves the loaded one as it is, running if it ran. What the
+        plc.toml of a project folder sets holds from then on.
         """
         if not isinstance(program, Program):
             text, name, chosen = read_project(program)
@@ -237,7 +250,14 @@ class Plc:
                 raise EcsimError(
                     f"{name} is a project for {chosen['model']}, this is an {self.model.name}; make a Plc({chosen['model']!r})"
                 )
-            program = assemble(text, self.model, name)
+            scan_ms, system = chosen.get("scan_ms", self.scan_ms), self.system
+            if "input_filter_ms" in chosen:
+                system = replace(system, input_filter_ms=chosen["input_filter_ms"])
+            self._check_settings(scan_ms, system)
+            with own_lines(program):
+                program = assemble(text, self.model, name)
+            if chosen:
+                self._settle(scan_ms, system)
         if program.model.name != self.model.name:
             raise EcsimError(
                 f"the program was compiled for {program.model.name}, this is an {self.model.name}; compile it for {self.model.name}"

@@ -1,9 +1,13 @@
 """Where a program's text comes from: a string, an .il file, or a project folder with plc.toml and *.il files."""
 
+import re
 import tomllib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
-from .errors import EcsimError
+from .errors import EcsimError, ProgramError
 
 
 def read_project(program: str | Path) -> tuple[str, str, dict]:
@@ -46,8 +50,36 @@ def _folder(folder: Path) -> str:
     return "\n".join(_text(path) for path in files)
 
 
+@contextmanager
+def own_lines(program: object) -> Iterator[None]:
+    """Let the problems of a project folder name its files and their own lines instead of those of the whole text."""
+    try:
+        yield
+    except ProgramError as error:
+        if not ((isinstance(program, Path) or _is_path(program)) and Path(program).is_dir()):
+            raise
+        starts = [(1, "")]
+        for path in sorted(Path(program).glob("*.il")):
+            first, _ = starts.pop()
+            starts += [(first, path.name), (first + len(_text(path).split("\n")), "")]
+        starts.pop()
+
+        def place(line: int) -> tuple[int, str]:
+            first, name = max(start for start in starts if start[0] <= max(line, 1))
+            return line - first + 1, name
+
+        def named(text: str) -> str:
+            return re.sub(r"\bline (\d+)\b", lambda found: "line {} of {}".format(*place(int(found[1]))), text)
+
+        problems = []
+        for problem in error.problems:
+            line, name = place(problem.line)
+            problems.append(replace(problem, line=line, source=name, message=named(problem.message), hint=named(problem.hint)))
+        raise ProgramError(problems) from None
+
+
 def settings(folder: Path) -> dict:
-    """The content of a project's plc.toml, {} when there is none; its keys are `model` and `scan_ms`."""
+    """The content of a project's plc.toml, {} when there is none; its keys are `model`, `scan_ms` and `input_filter_ms`."""
     path = folder / "plc.toml"
     if not path.exists():
         return {}

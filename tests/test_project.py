@@ -110,8 +110,8 @@ def test_a_project_needs_no_plc_toml(folder):
     assert Plc("EC20").load(folder).steps > 0
 
 
-def test_problems_name_the_project(folder):
+def test_problems_name_the_file(folder):
     (folder / "main.il").write_text("LD X0\nOUT X1")
     with pytest.raises(ProgramError) as refused:
         Plc("EC10").load(folder)
-    assert str(refused.value.problems[0]).startswith(f"{folder.name}: line 2, column 5")
+    assert str(refused.value.problems[0]).startswith("main.il: line 2, column 5")
