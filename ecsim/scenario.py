@@ -109,8 +109,11 @@ def _act(plc: Plc, action: str | None, number: int) -> None:
     actions[action]()
 
 
-def run_case(case: dict[str, Any], model: str, tracing: bool = False) -> Verdict:
-    """One conformance case on one model, from a cold start; inputs are ideal unless the case says otherwise."""
+def run_case(case: dict[str, Any], model: str, tracing: bool = False, stepping: bool = False) -> Verdict:
+    """One conformance case on one model, from a cold start; inputs are ideal unless the case says otherwise.
+
+    `tracing` runs it on the stepping engine and records every scan, `stepping` runs it there without recording.
+    """
     name = case["id"]
     try:
         program = assemble(case["il"], model)
@@ -123,6 +126,7 @@ def run_case(case: dict[str, Any], model: str, tracing: bool = False) -> Verdict
     try:
         plc = Plc(model, scan_ms=case.get("scan_ms", 10), system=_system(case, model))
         plc.tracing = tracing
+        plc.engine = "stepping" if stepping else "compiled"
         for place, buffers in case.get("modules", {}).items():  # special modules by place, with what their buffers hold
             plc.modules[int(place)] = module = Module(len(buffers))
             module.write(0, buffers)

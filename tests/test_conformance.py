@@ -50,7 +50,7 @@ def verdict_line(verdict):
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 def test_every_case_holds(path, engine):
     runs = [(case, model) for case in cases(path) if not waits(case) for model in case["models"]]
-    verdicts = [run_case(case, model, tracing=engine == "stepping") for case, model in runs]
+    verdicts = [run_case(case, model, stepping=engine == "stepping") for case, model in runs]
     failed = [verdict_line(verdict) for verdict in verdicts if not verdict.passed]
     assert failed == [], f"{len(failed)} of {len(verdicts)} fail:\n" + "\n".join(failed)
 
