@@ -36,6 +36,16 @@ class FastCounter:
         return (*self.inputs, *(n for n in (self.reset, self.start) if n is not None))
 
 
+@dataclass(frozen=True, slots=True)
+class PortMap:
+    """A serial port: what it can speak, the usual protocol first, and its special devices and interrupt events by meaning."""
+
+    protocols: tuple[str, ...]
+    relays: dict[str, int]
+    registers: dict[str, int]
+    events: dict[str, int] = field(default_factory=dict)
+
+
 @dataclass(frozen=True)
 class Model:
     """One PLC model. Meanings ("carry") are keys, devices are values, so that another family is another table."""
@@ -73,7 +83,10 @@ class Model:
     fast_counters: dict[int, FastCounter] = field(default_factory=dict)
     events: dict[int, int] = field(default_factory=dict)  # interrupt event -> the special relay that enables it (9.1)
     least_ramp_ms: int = 0  # of PLSR
+    battery: bool = True  # whether a battery keeps the retained devices (2.1.10)
     reff_ms: tuple[int, ...] = (0,)  # what REFF may set the input filter to
+    ports: tuple[PortMap, ...] = ()
+    bauds: dict[str, tuple[int, ...]] = field(default_factory=dict)  # protocol -> its baud rates
 
     def timer_base_us(self, number: int) -> int:
         """The time unit of a timer in microseconds."""
