@@ -5,10 +5,11 @@ from pathlib import Path
 from .assembler import Program, assemble
 from .errors import EcsimError, ProgramError
 from .help import help  # noqa: A004 - the public name of the act
-from .plc import Plc, SystemBlock
+from .plc import Plc
 from .project import own_lines, read_project
 from .record import Recording
 from .session import Session
+from .system import SystemBlock
 from .views.listing import listing
 
 __version__ = "0.1.0"

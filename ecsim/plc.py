@@ -3,10 +3,10 @@
 import copy
 import threading
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from datetime import datetime
 from functools import wraps
-from numbers import Integral, Real
+from numbers import Integral
 from pathlib import Path
 from typing import Any
 
@@ -34,6 +34,7 @@ from .hardware.unit import Unit
 from .memory import Memory
 from .models import Model, get_model
 from .project import own_lines, read_project
+from .system import SystemBlock, within
 from .values import BOOL, DataType
 
 LONGEST_NS = 5_000_000_000  # a program that takes longer is stopped (61) even where WDT or a watchdog of 0 would let it run
@@ -52,74 +53,6 @@ def alone(method: Callable) -> Callable:
 
 class Overrun(Exception):
     """The user program took longer than the watchdog allows."""
-
-
-@dataclass
-class SystemBlock:
-    """What the system block (2.2.1) sets. `retain` maps an area to its retained ranges, [(first, last), ...] as numbers.
-
-    A Plc refuses settings that its model does not have.
-    """
-
-    retain: dict[str, list[tuple[int, int]]] = field(default_factory=dict)
-    hold_values: bool = False
-    data_block: dict[str, int] = field(default_factory=dict)
-    data_block_valid: bool = True
-    stop_outputs: str = "disable"  # disable, freeze or configure
-    stop_output_table: dict[str, int] = field(default_factory=dict)
-    watchdog_ms: int = 200
-    constant_scan_ms: int = 0
-    input_filter_ms: float | None = None
-
-    def check(self, model: Model) -> None:
-        """Raise EcsimError for a setting that the model does not have."""
-        if self.stop_outputs not in STOP_OUTPUTS:
-            raise EcsimError(f"stop_outputs is {self.stop_outputs!r}; choose {' or '.join(STOP_OUTPUTS)}")
-        _within("watchdog_ms", self.watchdog_ms, 0, 1000)
-        _within("constant_scan_ms", self.constant_scan_ms, 0, 1000)
-        if self.constant_scan_ms > self.watchdog_ms > 0:
-            raise EcsimError(
-                f"constant_scan_ms is {self.constant_scan_ms}, above the watchdog's {self.watchdog_ms}; raise watchdog_ms (2.1.4)"
-            )
-        if self.input_filter_ms is not None and model.filter_choices and self.input_filter_ms not in model.filter_choices:
-            raise EcsimError(f"input_filter_ms is {self.input_filter_ms!r}; {model.name} takes {choice_text(model.filter_choices)}")
-        self._check_retention(model)
-
-    def _check_retention(self, model: Model) -> None:
-        held = {"bits": 0, "words": 0, "counters": 0}
-        for area, ranges in self.retain.items():
-            if area not in model.retained:
-                raise EcsimError(f"{model.name} cannot retain {area}; it retains {', '.join(model.retained)}")
-            if len(ranges) > model.retention_limits.get("ranges", len(ranges)):
-                raise EcsimError(f"retain has {len(ranges)} ranges of {area}; {model.name} takes {model.retention_limits['ranges']}")
-            count = model.areas[area].count
-            for first, last in ranges:
-                if not (isinstance(first, int) and isinstance(last, int) and 0 <= first <= last < count):
-                    raise EcsimError(
-                        f"retain names {area} from {first!r} to {last!r}; write numbers from 0 to {count - 1}, the first one first"
-                    )
-            size = len({number for first, last in ranges for number in range(first, last + 1)})
-            held["bits" if model.areas[area].kind == "bit" else "words"] += size
-            held["counters"] += size if model.areas[area].kind == "counter" else 0
-        for what, size in held.items():
-            if size > model.retention_limits.get(what, size):
-                raise EcsimError(f"retain names {size} {what}; {model.name} can retain {model.retention_limits[what]} of them")
-
-
-STOP_OUTPUTS = ("disable", "freeze", "configure")
-
-
-def _within(what: str, value: Any, low: float, high: float) -> None:
-    """Raise EcsimError unless a number lies within its range."""
-    if isinstance(value, bool) or not isinstance(value, Real) or not low <= value <= high:
-        raise EcsimError(f"{what} is {value!r}; it is a number from {low:g} to {high:g}")
-
-
-def choice_text(choices: tuple[int, ...]) -> str:
-    """Numbers to choose from, in words: "0 to 60", "0, 8, 16, 32 or 64"."""
-    if choices == tuple(range(choices[0], choices[-1] + 1)):
-        return f"{choices[0]} to {choices[-1]}"
-    return f"{', '.join(map(str, choices[:-1]))} or {choices[-1]}"
 
 
 @dataclass(frozen=True)
@@ -154,10 +87,6 @@ class Plc:
         input_filter_ms = self.model.filter_ms if self.system.input_filter_ms is None else self.system.input_filter_ms
         self.lock = threading.RLock()  # a scan in progress has it, and so has what must not come between: load, force, run ...
         self.memory = Memory(self.model)
-        for name, value in self.system.data_block.items():
-            self._start_value("data_block", "D", name, value)
-        for name, value in self.system.stop_output_table.items():
-            self._start_value("stop_output_table", "Y", name, value)
         self.faults = Faults(self.memory)
         self.clock = [0]
         self._awake: list[Unit] = []  # the units that time has to ask
@@ -217,7 +146,7 @@ class Plc:
     def _check_settings(self, scan_ms: float | None, system: SystemBlock) -> None:
         """Raise EcsimError for what this model cannot be set to."""
         if scan_ms is not None:
-            _within("scan_ms (None to model it)", scan_ms, 0.001, 60_000)
+            within("scan_ms (None to model it)", scan_ms, 0.001, 60_000)
         system.check(self.model)
 
     def _settle(self, scan_ms: float | None, system: SystemBlock) -> None:
@@ -227,13 +156,6 @@ class Plc:
         if system.input_filter_ms is not None:
             self.inputs.usual_us = round(system.input_filter_ms * 1000)
             self.inputs.set_filter(self.inputs.usual_us)
-
-    def _start_value(self, where: str, area: str, name: str, value: Any) -> None:
-        """Raise EcsimError unless the data block or the output table can hold an entry."""
-        device, kind = self.memory.parse(name)
-        if device.area != area:
-            raise EcsimError(f"{where} names {name}; it holds {area} devices")
-        self.memory.fitting(device, kind, value)
 
     # -- the program --------------------------------------------------------------------------------------------
 
@@ -452,7 +374,7 @@ class Plc:
     @alone
     def advance(self, ms: float) -> None:
         """Simulated time goes on by `ms` milliseconds: as many scans as begin in it."""
-        _within("ms", ms, 0, 1e12)
+        within("ms", ms, 0, 1e12)
         self._asked = self.clock[0] + round(1000 * self.left(ms))
         while self.clock[0] < self._asked:
             self._one_scan()

@@ -11,7 +11,8 @@ from .errors import EcsimError, ProgramError
 from .hardware.modules import Module
 from .memory import Memory
 from .models import get_model
-from .plc import Plc, SystemBlock
+from .plc import Plc
+from .system import SystemBlock
 from .values import REAL
 
 REAL_TOLERANCE = 1e-5

@@ -16,7 +16,7 @@ FLOORS = (
     ("models",),  # data about devices, and nothing more
     ("memory", "hardware"),
     ("instructions",),
-    ("assembler", "project"),
+    ("assembler", "project", "system"),
     ("engines",),
     ("plc",),
     ("views", "record", "history", "modbus", "comms", "verify", "scenario", "help"),

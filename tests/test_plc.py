@@ -7,9 +7,9 @@ settings in test_system_block.py, those of endless programs in test_endless_prog
 import pytest
 
 import ecsim
+from ecsim import Plc, SystemBlock
 from ecsim.assembler import assemble
 from ecsim.errors import EcsimError, ProgramError
-from ecsim.plc import Plc, SystemBlock
 
 MODELS = ["EC10", "EC20"]
 

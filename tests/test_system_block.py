@@ -5,6 +5,7 @@ import threading
 import pytest
 
 from ecsim import EcsimError, Plc, Session, SystemBlock
+from ecsim.hardware.serial import PortSettings
 
 
 @pytest.mark.parametrize(
@@ -29,11 +30,37 @@ from ecsim import EcsimError, Plc, Session, SystemBlock
         ("EC20", {"data_block": {"D0": 70000}}, "70000 does not fit into D0"),
         ("EC20", {"stop_output_table": {"M0": 1}}, "it holds Y devices"),
         ("EC20", {"stop_output_table": {"Y0": 2}}, "Y0 is one bit"),
+        ("EC20", {"power_loss_ms": 101}, "power_loss_ms is 101; it is a number from 0 to 100"),
+        ("EC10", {"power_loss_ms": 1}, "power_loss_ms is 1, but EC10 has no such setting; leave it out"),
+        ("EC20", {"run_input": "X20"}, "run_input is 'X20'; choose one of X0 to X17, or None"),
+        ("EC10", {"run_input": "M0"}, "run_input is 'M0'; choose one of X0 to X17, or None"),
+        ("EC20", {"interrupt_priority": {8: "high"}}, "names event 8; EC20 has 0, 1, 2"),
+        ("EC20", {"interrupt_priority": {29: "high"}}, "names event 29; EC20 has 0, 1, 2"),
+        ("EC10", {"interrupt_priority": {29: "highest"}}, "event 29 is 'highest'; choose low or high"),
+        ("EC10", {"no_battery": True}, "EC10 has no battery that could be missing; leave it out"),
+        ("EC20", {"format_lock": 1}, "format_lock is 1; write True or False"),
+        ("EC20", {"modules": {0: {}}}, "place 0, which the system block of EC20 has not; set its modules up with TO"),
+        ("EC10", {"modules": {4: {}}}, "place 4, which the system block of EC10 has not; write a place from 0 to 3"),
+        ("EC20", {"port0": PortSettings("modbus master")}, "the protocol of port 0 is 'modbus master'; choose "),
+        ("EC20", {"port1": PortSettings("freeport", baud=300)}, "the baud rate of port 1 is 300; choose "),
+        ("EC10", {"modules": {0: 5}}, "place 0 is set to 5; write its settings by name"),
     ],
 )
 def test_a_setting_that_the_model_does_not_have_is_refused(model, settings, says):
     with pytest.raises(EcsimError, match=says):
         Plc(model, system=SystemBlock(**settings))
+
+
+@pytest.mark.parametrize(
+    ("model", "settings"),
+    [
+        ("EC20", {"power_loss_ms": 100, "run_input": "X17", "interrupt_priority": {0: "high", 28: "low"}, "no_battery": True}),
+        ("EC10", {"run_input": "X0", "interrupt_priority": {37: "high"}, "format_lock": True, "modules": {3: {}}}),
+    ],
+)
+def test_the_settings_at_the_end_of_their_ranges_are_taken(model, settings):
+    plc = Plc(model, system=SystemBlock(**settings))
+    assert {name: getattr(plc.system, name) for name in settings} == settings
 
 
 def test_the_filter_given_beside_the_system_block_is_held_to_the_same_choices():

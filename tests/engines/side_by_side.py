@@ -1,8 +1,8 @@
 """One program on three machines at once: compiled, stepping (traced now and then), and one that changes all the time."""
 
+from ecsim import Plc, SystemBlock
 from ecsim.assembler import assemble
 from ecsim.errors import EcsimError
-from ecsim.plc import Plc, SystemBlock
 
 WATCHDOG_MS = 2  # an endless loop of a random program ends soon
 EDGES = (0, 0, 1, 1, 2, 3, 4, 7, -1, -2, 10, 100, 7990, -8000, 32767, -32768)

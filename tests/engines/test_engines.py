@@ -2,8 +2,8 @@
 
 import pytest
 
+from ecsim import Plc, SystemBlock
 from ecsim.errors import ProgramError
-from ecsim.plc import Plc, SystemBlock
 
 
 @pytest.fixture(params=["compiled", "stepping", "traced"])

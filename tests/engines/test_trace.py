@@ -4,7 +4,7 @@ import random
 
 import pytest
 
-from ecsim.plc import Plc, SystemBlock
+from ecsim import Plc, SystemBlock
 
 from .random_programs import random_program
 

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 import ecsim
 from ecsim.hardware.modules import Module
-from ecsim.plc import SystemBlock
+from ecsim.system import SystemBlock
 
 
 def running_plc(il, model="EC20", **settings):
