@@ -5,7 +5,7 @@ registers as signed 16-bit numbers. T and C hold current values, TB and CB conta
 The lists keep their identity for as long as nothing is forced, so that generated code may hold them.
 """
 
-from collections.abc import Container
+from collections.abc import Container, Sequence
 from dataclasses import replace
 from numbers import Number
 from operator import index
@@ -178,6 +178,22 @@ class Memory:
         if not 0 <= moved.number <= len(self.lists[operand.area]) - span:
             raise Fault(RANGE)
         return moved
+
+    # -- writing from outside -------------------------------------------------------------------------------------
+
+    def receive(self, name: str, first: int, values: Sequence) -> None:
+        """Write a run of an area's list as a communication partner does: inputs, and what only the system writes, keep their values.
+
+        No error tells of them (10.4: such a write is answered and does nothing). `name` is a list's name: D, SD, TB ...;
+        bits come as True and False, registers as signed numbers.
+        """
+        if name == "X":
+            return
+        kept = self.model.read_only(name)
+        target = self.lists[name]
+        for number, value in enumerate(values, first):
+            if number not in kept:
+                target[number] = value
 
     # -- forcing ------------------------------------------------------------------------------------------------
 

@@ -237,3 +237,22 @@ def test_a_snapshot_is_a_copy(memory):
     assert kept["D"][5] == 0
     memory.restore(kept)
     assert memory.get(*memory.parse("D5")) == 0
+
+
+def test_what_comes_through_a_port_passes_by_inputs_and_what_the_system_writes(memory):
+    memory.receive("X", 0, [True, True])
+    assert not any(memory.lists["X"])
+    memory.receive("SM", 39, [True, True, True])
+    assert memory.lists["SM"][38:43] == [False, False, True, True, False]
+    memory.receive("SD", 65, [1, 2, 3, 4, 5])
+    assert memory.lists["SD"][64:71] == [0, 0, 2, 3, 4, 0, 0]
+    memory.receive("D", 10, [-7, 8])
+    assert memory.lists["D"][9:13] == [0, -7, 8, 0]
+    memory.receive("TB", 5, [True])
+    assert memory.lists["TB"][5] is True
+
+
+def test_what_comes_through_a_port_leaves_forced_devices(memory):
+    memory.force(*memory.parse("D3"), 4)
+    memory.receive("D", 2, [7, 7, 7])
+    assert memory.lists["D"][2:5] == [7, 4, 7]
