@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from ..devices import Syntax
-from . import ec_fast, ec_serial
+from . import ec_fast, ec_modbus, ec_serial
 from .model import Area, Model
 
 
@@ -72,6 +72,8 @@ EC20 = Model(
     retention_limits={"ranges": 2, "counters": 200},
     ports=ec_serial.PORTS_EC20,
     bauds=ec_serial.BAUDS,
+    modbus=ec_modbus.RANGES,
+    modbus_most=ec_modbus.MOST,
     **ec_fast.EC20,
 )  # fmt: skip
 
@@ -95,5 +97,6 @@ EC10 = replace(
     relays=EC20.relays | {"eeprom idle": 196} | ec_fast.RELAYS_EC10,
     registers=EC20.registers | ec_fast.REGISTERS_EC10,
     ports=ec_serial.PORTS_EC10,
+    modbus_modes=("rtu",),  # 10.4.1
     **ec_fast.EC10,
 )  # fmt: skip

@@ -46,6 +46,18 @@ class PortMap:
     events: dict[str, int] = field(default_factory=dict)
 
 
+@dataclass(frozen=True, slots=True)
+class ModbusRange:
+    """A run of Modbus addresses: `count` devices of the list `name` from number `first` on, `words` registers each (10.4.6)."""
+
+    name: str
+    address: int  # the protocol's, which counts from 0
+    count: int
+    functions: tuple[int, ...]
+    first: int = 0
+    words: int = 1
+
+
 @dataclass(frozen=True)
 class Model:
     """One PLC model. Meanings ("carry") are keys, devices are values, so that another family is another table."""
@@ -85,6 +97,9 @@ class Model:
     least_ramp_ms: int = 0  # of PLSR
     battery: bool = True  # whether a battery keeps the retained devices (2.1.10)
     reff_ms: tuple[int, ...] = (0,)  # what REFF may set the input filter to
+    modbus: tuple[ModbusRange, ...] = ()
+    modbus_most: dict[int, int] = field(default_factory=dict)  # function -> the most devices or registers of one request
+    modbus_modes: tuple[str, ...] = ("rtu", "ascii")
     ports: tuple[PortMap, ...] = ()
     bauds: dict[str, tuple[int, ...]] = field(default_factory=dict)  # protocol -> its baud rates
 
