@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from ..devices import Syntax
-from . import ec_fast, ec_modbus, ec_serial
+from . import ec_fast, ec_modbus, ec_modules, ec_serial
 from .model import Area, Model
 
 
@@ -47,19 +47,19 @@ EC20 = Model(
         "clock 10 ms": 10, "clock 100 ms": 11, "clock 1 s": 12, "clock 1 min": 13, "clock 1 h": 14, "scan toggle": 15,
         "fault": 20, "fault range": 21, "fault operand": 22, "zero": 180, "carry": 181, "borrow": 182, "bytewise": 186,
         "counter direction": 0,  # SM(n) for C(n): appendix 1, section 17
-        **ec_fast.RELAYS, **ec_serial.RELAYS,
+        **ec_fast.RELAYS, **ec_serial.RELAYS, **ec_modules.RELAYS,
     },
     registers={
         "type": 0, "version": 1, "capacity": 2, "system error": 3, "faults": 20,
         "scan time": 30, "least scan time": 31, "greatest scan time": 32, "constant scan": 33, "watchdog": 34, "input filter": 35,
-        "faulty module": 25, "clock": 100, **ec_fast.REGISTERS, **ec_serial.REGISTERS,
+        "faulty module": 25, "clock": 100, **ec_fast.REGISTERS, **ec_serial.REGISTERS, **ec_modules.REGISTERS,
     },
     read_only_relays=_others(_RELAYS),
     read_only_registers=_others(_REGISTERS),
     limits={
         "steps": 12_000, "MC nesting": 7, "FOR nesting": 8, "CALL nesting": 6, "subroutines": 64, "joined steps": 16,
         "flows": 20, "bit variables": 16, "word variables": 16, "global variables": 500, "stack": 8, "waveforms": 100, "potentiometers": 2,
-        "run inputs": 16, "power loss ms": 100,
+        "run inputs": 16, "power loss ms": 100, **ec_modules.LIMITS_EC20,
     },
     filter_inputs=0o20,
     filter_ms=10,
@@ -70,8 +70,11 @@ EC20 = Model(
     type_code=20,
     initial_registers={25: 255, 26: 255, **ec_fast.INITIAL},
     retention_limits={"ranges": 2, "counters": 200},
+    base_units=ec_modules.BASE_UNITS_EC20,
+    module_kinds=ec_modules.MODULES_EC20,
     ports=ec_serial.PORTS_EC20,
     bauds=ec_serial.BAUDS,
+    baud_codes=ec_serial.BAUD_CODES,
     modbus=ec_modbus.RANGES,
     modbus_most=ec_modbus.MOST,
     **ec_fast.EC20,
@@ -81,7 +84,7 @@ EC10 = replace(
     EC20,
     name="EC10",
     areas=_areas(x=0o200, y=0o200, m=2048, s=1024),
-    limits=EC20.limits | {"global variables": 140, "power loss ms": 0, "modules set up": 4},
+    limits=EC20.limits | {"global variables": 140, "power loss ms": 0, "modules set up": 4} | ec_modules.LIMITS_EC10,
     battery=False,
     filter_inputs=0o10,
     filter_ms=8,
@@ -95,7 +98,12 @@ EC10 = replace(
     step_surcharge=("M", 1536),  # 5.1.1: a contact on M1536 to M2047 is one step longer
     retention_limits={"ranges": 1, "bits": 320, "words": 180},
     relays=EC20.relays | {"eeprom idle": 196} | ec_fast.RELAYS_EC10,
-    registers=EC20.registers | ec_fast.REGISTERS_EC10,
+    registers=EC20.registers | ec_fast.REGISTERS_EC10 | ec_modules.REGISTERS_EC10,
+    initial_registers=EC20.initial_registers | ec_modules.INITIAL_EC10,
+    base_units=ec_modules.BASE_UNITS_EC10,
+    analog_base=ec_modules.ANALOG_BASE_EC10,
+    module_kinds=ec_modules.MODULES_EC10,
+    **ec_modules.ANALOG_EC10,
     ports=ec_serial.PORTS_EC10,
     modbus_modes=("rtu",),  # 10.4.1
     **ec_fast.EC10,

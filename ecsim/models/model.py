@@ -58,6 +58,40 @@ class ModbusRange:
     words: int = 1
 
 
+@dataclass(frozen=True, slots=True)
+class AnalogMode:
+    """What an analog channel measures or gives: V, mA or C (degrees) from `low` to `high`; `origin` is the number `zero`, `high` is `full`."""
+
+    unit: str
+    low: float
+    origin: float
+    high: float
+    zero: int
+    full: int
+
+
+@dataclass(frozen=True, slots=True)
+class AnalogPort:
+    """An analog channel of the base unit: the relay that enables it, its register, its modes, the relay that takes the second, the samples."""
+
+    enable: int
+    register: int
+    modes: tuple[AnalogMode, ...]
+    second: int | None = None
+    samples: int | None = None
+
+
+@dataclass(frozen=True)
+class ModuleKind:
+    """A kind of special module by name: its code, its channels, the modes that they can have by number, and whether it gives signals out."""
+
+    name: str
+    code: int
+    channels: int
+    modes: dict[int, AnalogMode]
+    output: bool = False
+
+
 @dataclass(frozen=True)
 class Model:
     """One PLC model. Meanings ("carry") are keys, devices are values, so that another family is another table."""
@@ -101,7 +135,13 @@ class Model:
     modbus_most: dict[int, int] = field(default_factory=dict)  # function -> the most devices or registers of one request
     modbus_modes: tuple[str, ...] = ("rtu", "ascii")
     ports: tuple[PortMap, ...] = ()
+    base_units: tuple[tuple[int, int], ...] = ()  # inputs and outputs of the units to choose from
+    module_kinds: dict[str, ModuleKind] = field(default_factory=dict)
+    analog_inputs: tuple[AnalogPort, ...] = ()
+    analog_outputs: tuple[AnalogPort, ...] = ()
+    analog_base: tuple[int, int] | None = None  # the base unit that has them
     bauds: dict[str, tuple[int, ...]] = field(default_factory=dict)  # protocol -> its baud rates
+    baud_codes: dict[int, int] = field(default_factory=dict)  # baud rate -> what the mode word of a port says for it
 
     def timer_base_us(self, number: int) -> int:
         """The time unit of a timer in microseconds."""
