@@ -1,10 +1,11 @@
 """From text to a program: read, resolved, checked against TABLE and the model, all problems reported together."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from difflib import get_close_matches
 
 from ..devices import Bits, Constant, Device, Name
-from ..errors import Problem, ProgramError
+from ..errors import ProgramError
 from ..instructions import TABLE, Definition
 from ..instructions.signature import OperandSpec, parse_signature
 from ..models import Model, get_model
@@ -28,8 +29,11 @@ FOREIGN = {
 __all__ = ["Instruction", "Network", "Program", "Region", "Unit", "Variable", "assemble"]
 
 
-def assemble(text: str, model: str | Model, name: str = "") -> Program:
-    """The program that `text` spells for a model; raises ProgramError with every problem found. `name` is shown in messages."""
+def assemble(text: str | Mapping[str, str], model: str | Model, name: str = "") -> Program:
+    """The program that a text, or files by name, spell for a model; raises ProgramError with every problem found.
+
+    Messages name the file and its own line; for a text alone the file is `name`.
+    """
     return _Assembler(read(text, name), get_model(model)).program()
 
 
@@ -68,9 +72,9 @@ class _Assembler:
                     unit.instructions.append(instruction)
         self._raise()  # structure is looked at only where every word was understood
         for unit in self.units:
-            find_structure(unit, self.model.limits, self.model.initial_steps, self._report_instruction)
+            find_structure(unit, self.model.limits, self.model.initial_steps, self._report_instruction, self.source.where)
         self._calls()
-        check_inputs(self.units, self.model, self.source.report)
+        check_inputs(self.units, self.model, self.source.report, self.source.where)
         self._count_instructions()
         position, step = 0, 0
         for unit in self.units:
@@ -210,7 +214,7 @@ class _Assembler:
             first = seen.setdefault(unit.name.upper(), unit)
             if first is not unit:
                 self.source.report(
-                    unit.line, f"the name {shown(unit.name)} stands twice", f"it stands in line {first.line} already", word=1
+                    unit.line, f"the name {shown(unit.name)} stands twice", f"it stands in {self.source.where(first.line)} already", word=1
                 )
             if unit.event is not None:
                 other = events.setdefault(unit.event, unit)
@@ -218,7 +222,7 @@ class _Assembler:
                     self.source.report(
                         unit.line,
                         f"the event {unit.event} has two interrupt programs",
-                        f"{other.name} in line {other.line} serves it already",
+                        f"{other.name} in {self.source.where(other.line)} serves it already",
                         "9.2",
                         word=3,
                     )
@@ -381,9 +385,7 @@ class _Assembler:
                 self._report_instruction(instructions[limit], f"{kinds} stand {len(instructions)} times", f"at most {limit} times together")
 
     def _report_instruction(self, instruction: Instruction, message: str, hint: str = "", section: str = "") -> None:
-        self.source.problems.append(
-            Problem(instruction.line, self.source.column(instruction.line, 0), message, hint, section, self.source.name)
-        )
+        self.source.report(instruction.line, message, hint, section)
 
     # -- calls --------------------------------------------------------------------------------------------------
 

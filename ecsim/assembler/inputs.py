@@ -9,19 +9,22 @@ from .program import Unit
 FALLING, EDGES = 10, 8  # events 0 to 7 are rising edges of X0 to X7, 10 to 17 falling ones
 
 
-def check_inputs(units: list[Unit], model: Model, report: Callable[..., None]) -> None:
-    """Report every input that two functions need, and every event that the model has not; `report(line, message, hint, section)`."""
+def check_inputs(units: list[Unit], model: Model, report: Callable[..., None], where: Callable[[int], str]) -> None:
+    """Report every input that two functions need, and every event that the model has not; `report(line, message, hint, section)`.
+
+    `where(line)` names a line in a message.
+    """
     for unit in units:
         if unit.event is not None and unit.event not in model.events:
             known = ", ".join(_runs(sorted(model.events)))
             report(unit.line, f"{model.name} has no interrupt event {unit.event}", f"it has {known}", "9.1")
     users: dict[int, tuple[str, int]] = {}
     for number, what, line in _uses(units, model):
-        first, where = users.setdefault(number, (what, line))
+        first, earlier = users.setdefault(number, (what, line))
         if first != what:
             report(
                 line,
-                f"X{number} serves {first} in line {where} and {what} in line {line}",
+                f"X{number} serves {first} in {where(earlier)} and {what} in {where(line)}",
                 "each of X0 to X7 can serve one high-speed counter, SPD, pulse capture or interrupt only",
                 "8.5",
             )

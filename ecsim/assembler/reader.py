@@ -1,6 +1,8 @@
 """Text to statements: headers, variables, comments; one instruction a line (DESIGN: instruction list is the canonical form)."""
 
 import re
+from bisect import bisect_right
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from ..errors import Problem
@@ -52,14 +54,26 @@ class RawUnit:
 
 @dataclass
 class Source:
-    """A program's text taken apart."""
+    """A program's text taken apart. Lines are counted through all its files; `starts` has the first line and the name of each."""
 
     text: str
-    name: str = ""
+    starts: list[tuple[int, str]] = field(default_factory=list)
     globals: list[RawVariable] = field(default_factory=list)
     units: list[RawUnit] = field(default_factory=list)
     problems: list[Problem] = field(default_factory=list)
     lines: list[str] = field(default_factory=list)
+
+    def place(self, line: int) -> tuple[str, int]:
+        """The file that a line stands in, and its number there."""
+        if not line:  # the program as a whole
+            return self.starts[0][1] if len(self.starts) == 1 else "", 0
+        first, name = self.starts[bisect_right(self.starts, line, key=lambda start: start[0]) - 1]
+        return name, line - first + 1
+
+    def where(self, line: int) -> str:
+        """A line in words, for a message about another one."""
+        name, own = self.place(line)
+        return f"line {own} of {name}" if len(self.starts) > 1 else f"line {own}"
 
     def column(self, line: int, word: int) -> int:
         """The column, from 1, of the word with that number in a line."""
@@ -68,7 +82,8 @@ class Source:
 
     def report(self, line: int, message: str, hint: str = "", section: str = "", word: int = 0) -> None:
         """Note one problem."""
-        self.problems.append(Problem(line, self.column(line, word), message, hint, section, self.name))
+        name, own = self.place(line)
+        self.problems.append(Problem(own, self.column(line, word), message, hint, section, name))
 
 
 def shown(text: str, limit: int = 40) -> str:
@@ -77,25 +92,32 @@ def shown(text: str, limit: int = 40) -> str:
     return repr(clean if len(clean) <= limit else clean[: limit - 3] + "...")
 
 
-def read(text: str, name: str = "") -> Source:
-    """Take a program's text apart; what cannot be read is noted in `problems`."""
-    return _Reader(text, name).read()
+def read(text: str | Mapping[str, str], name: str = "") -> Source:
+    """Take a program's text, or its files by name, apart; what cannot be read is noted in `problems`."""
+    files = text if isinstance(text, Mapping) else {name: text}
+    reader = _Reader(Source("\n".join(files.values())))
+    for file, part in files.items():
+        reader.read(file, part)
+    return reader.source
 
 
 class _Reader:
-    def __init__(self, text: str, name: str):
-        self.source = Source(text, name)
-        self.unit: RawUnit | None = None
+    def __init__(self, source: Source):
+        self.source = source
         self.implicit: RawUnit | None = None
+
+    def read(self, name: str, text: str) -> None:
+        """One file, which leaves nothing open for the next one."""
+        source, self.first = self.source, len(self.source.lines)
+        self.unit: RawUnit | None = None
         self.in_globals = False
         self.role = ""  # of the variables between VAR_INPUT, VAR_OUTPUT ... and END_VAR
         self.title: list[str] = []
-
-    def read(self) -> Source:
-        source = self.source
-        text = source.text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
-        source.lines = lines = self._without_blocks(text).split("\n")
-        for number, line in enumerate(lines, 1):
+        source.starts.append((self.first + 1, name))
+        text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
+        lines = self._without_blocks(text).split("\n")
+        source.lines[self.first :] = lines
+        for number, line in enumerate(lines, self.first + 1):
             code, slashes, comment = line.partition("//")
             words = (code.replace(",", " ") if "," in code else code).split()
             if not words:
@@ -112,8 +134,7 @@ class _Reader:
                 f"write END_{self._header(self.unit)} after its last line",
             )
         if self.in_globals:
-            source.report(len(lines), "VAR_GLOBAL has no END_VAR")
-        return source
+            source.report(len(source.lines), "VAR_GLOBAL has no END_VAR")
 
     def _without_blocks(self, text: str) -> str:
         """Block comments become blanks; one that fills its lines becomes a `//` comment, so that it can be a title."""
@@ -136,9 +157,11 @@ class _Reader:
                 continue
             match = _BLOCK.match(text, start)
             if match is None:
-                self.source.lines = text.split("\n")
+                self.source.lines[self.first :] = text.split("\n")
                 self.source.report(
-                    text.count("\n", 0, start) + 1, "a comment is not closed", f"end it with {'*/' if opened[0] == '/*' else '*)'}"
+                    self.first + text.count("\n", 0, start) + 1,
+                    "a comment is not closed",
+                    f"end it with {'*/' if opened[0] == '/*' else '*)'}",
                 )
                 return "".join(pieces) + text[position:start]
             after = text[match.end() : (text.find("\n", match.end()) + len(text) + 1) % (len(text) + 1)]

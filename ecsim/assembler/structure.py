@@ -11,14 +11,14 @@ _CLOSERS = {"MCR": "MC", "NEXT": "FOR", "RET": "STL"}
 _OPENERS = {closer_of: closer for closer, closer_of in _CLOSERS.items()}
 
 
-def find_structure(unit: Unit, limits: dict[str, int], initial_steps: int, report) -> None:
-    """Fill `unit.networks` and `unit.nodes`; `report(instruction, message, hint, section)` gets every broken rule."""
-    _Structure(unit, limits, initial_steps, report).walk()
+def find_structure(unit: Unit, limits: dict[str, int], initial_steps: int, report, where) -> None:
+    """Fill `unit.networks` and `unit.nodes`; `report(instruction, message, hint, section)` gets every broken rule, `where(line)` names a line."""
+    _Structure(unit, limits, initial_steps, report, where).walk()
 
 
 class _Structure:
-    def __init__(self, unit: Unit, limits: dict[str, int], initial_steps: int, report):
-        self.unit, self.limits, self.initial_steps, self.report = unit, limits, initial_steps, report
+    def __init__(self, unit: Unit, limits: dict[str, int], initial_steps: int, report, where):
+        self.unit, self.limits, self.initial_steps, self.report, self.where = unit, limits, initial_steps, report, where
         self.regions: list[Region] = []
         self.nodes: list[list] = [unit.nodes]
         self.start = 0
@@ -60,7 +60,7 @@ class _Structure:
         self._check_jumps()
         self._check_flows()
         if self.unit.kind == "MAIN":
-            _Transitions(self.unit, self.steps, self.initial_steps, self.report).check()
+            _Transitions(self.unit, self.steps, self.initial_steps, self.report, self.where).check()
 
     def _contact(self, index: int, instruction: Instruction) -> None:
         join = instruction.definition.join
@@ -200,9 +200,8 @@ class _Structure:
         if mnemonic == "LBL":
             label = instruction.operands[0].value
             if label in self.labels:
-                self.report(
-                    instruction, f"the label {label} stands twice", f"it stands in line {self.labels[label][0].line} already", "6.1.3"
-                )
+                first = self.where(self.labels[label][0].line)
+                self.report(instruction, f"the label {label} stands twice", f"it stands in {first} already", "6.1.3")
             self.labels[label] = (instruction, self._loops())
         self._network(index, index + 1)
         self.start = index + 1
@@ -233,7 +232,7 @@ class _Structure:
                 pass
             elif step.number in self.steps:
                 first = self.steps[step.number]
-                self.report(instruction, f"the step {step} is used twice", f"its first use is in line {first.line}", "7.4.1(1)")
+                self.report(instruction, f"the step {step} is used twice", f"its first use is in {self.where(first.line)}", "7.4.1(1)")
             else:
                 self.steps[step.number] = instruction
             self._network(index, index + 1)
@@ -339,8 +338,9 @@ class _Structure:
 class _Transitions:
     """7.4.1(6): SET leads to the adjacent step, OUT jumps."""
 
-    def __init__(self, unit: Unit, steps: dict[int, Instruction], initial_steps: int, report):
+    def __init__(self, unit: Unit, steps: dict[int, Instruction], initial_steps: int, report, where):
         self.unit, self.steps, self.initial_steps, self.report = unit, steps, initial_steps, report
+        self.where = where
 
     def check(self) -> None:
         transitions = list(self._transitions())
@@ -405,8 +405,8 @@ class _Transitions:
             others = [{step.number for step in other.steps} for other in joins if other is not region]
             if any(steps & other and (steps | other) & set(sources) for other in others):
                 stl = " and ".join(f"STL {step}" for step in region.steps)
-                line = self.unit.instructions[region.opening].line
-                return f"{stl} in line {line} are a join; give an empty step a rung of its own, for example LD SM0, NOP"
+                where = self.where(self.unit.instructions[region.opening].line)
+                return f"{stl} in {where} are a join; give an empty step a rung of its own, for example LD SM0, NOP"
         return ""
 
     def _follows(self, target: int, sources: list[int], order: dict[int, int]) -> bool:
