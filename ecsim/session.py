@@ -94,6 +94,7 @@ class Session:
         self._last_driven: tuple | None = None
         self._last_sensors: dict[str, int] | None = None
         self._inputs = {name: device.number for name, device in places if device.area == "X"}
+        self._registers = {name: plc.memory.parse(name) for name, device in places if device.area not in "XY"}
         steps = [device.number for device in plc.in_use(("S",))]
         if steps != self._steps:
             self._steps, self._last_steps = steps, None
@@ -130,7 +131,10 @@ class Session:
             if sensors != self._last_sensors:
                 self._last_sensors = sensors
                 for name, level in sensors.items():
-                    plc.inputs.set(self._inputs[name], level, now)
+                    if name in self._inputs:
+                        plc.inputs.set(self._inputs[name], level, now)
+                    else:  # a value that comes over a line, as from a scale or a touch screen
+                        plc.memory.set(*self._registers[name], level)
         if self._step_values is not None:
             self._note_steps()
         if self.recording is not None:

@@ -21,6 +21,7 @@ FLOORS = (
     ("plc",),
     ("views", "record", "history", "modbus", "comms", "verify", "scenario", "help"),
     ("session",),
+    ("grading",),
     ("cli", "__init__", "__main__"),
 )
 FLOOR_OF = {module: floor for floor, modules in enumerate(FLOORS) for module in modules}

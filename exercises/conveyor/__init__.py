@@ -4,9 +4,10 @@ from pathlib import Path
 
 from .picture import PICTURE
 from .plant import Conveyor
+from .rules import EXERCISE
 
 TITLE = "Pallet lift"
 STATEMENT = Path(__file__).with_name("statement.md")
 SOLUTION = Path(__file__).with_name("solution.il")
 
-__all__ = ["PICTURE", "SOLUTION", "STATEMENT", "TITLE", "Conveyor"]
+__all__ = ["EXERCISE", "PICTURE", "SOLUTION", "STATEMENT", "TITLE", "Conveyor"]

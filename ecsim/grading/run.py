@@ -1,0 +1,263 @@
+"""A scenario and its run: the program drives the machine while an operator acts, and the lanes are noted at each change."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from operator import attrgetter, itemgetter
+from typing import TYPE_CHECKING, Any
+
+from ..errors import EcsimError
+from ..plc import Plc
+from ..session import Session
+from .choices import Choice, chosen
+from .signals import Condition, Signal, compressed, condition, intervals
+
+if TYPE_CHECKING:
+    from .exercise import Exercise
+
+STEP = "Step"  # the lane of the active steps, which charts show and rules leave alone
+
+
+@dataclass(frozen=True)
+class Do:
+    """One act of the operator; acts are done one after the other.
+
+    It is done at second `at` of the run, or `after` seconds behind the moment at which `when` holds, or behind the act
+    before it. `set` maps devices, or names of the wiring, to values; with `hold` they go back to 0 after so many
+    seconds. `act(plc, plant)` is for all else: a fault of the machine, power off and on. Without any it only waits.
+    """
+
+    set: Mapping[str, Any] = field(default_factory=dict)
+    at: float | None = None
+    when: str | None = None
+    after: float = 0.0
+    hold: float | None = None
+    act: Callable[[Plc, Any], Any] | None = None
+
+    def __post_init__(self):
+        if self.at is not None and (self.when is not None or self.after):
+            raise EcsimError(f"an act has a time (at={self.at}) or a condition, not both")
+        if self.when is not None and condition(self.when).parts:
+            raise EcsimError(f"the act waits for {self.when!r}; it can wait for lanes only: wait for ON, then for OFF, in two acts")
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """A machine, an operator and a length of time. `name` is short, `words` say what happens.
+
+    `choices` are what may be otherwise, by name. `plant`, `script` and `seconds` may be functions of them:
+    `lambda chosen: Conveyor(first=chosen.first)`; `plant` is the exercise's own unless given, None for a scenario in
+    which the script sets the inputs by hand. It ends after `seconds` of simulated time, or `tail` seconds after `until`
+    holds. `draws` is how often it is graded with drawn choices besides the usual ones; `scan_ms` is the scan's length
+    if the exercise's own does not fit.
+    """
+
+    name: str
+    words: str
+    seconds: Any
+    script: Any = ()
+    choices: Mapping[str, Choice] = field(default_factory=dict)
+    plant: Any = ...
+    until: str | None = None
+    tail: float = 1.0
+    draws: int = 4
+    scan_ms: float | None = None
+
+    def __post_init__(self):
+        if self.until is not None and condition(self.until).parts:
+            raise EcsimError(f"the scenario {self.name} ends when {self.until!r} holds; name lanes only there")
+
+
+@dataclass
+class Trace:
+    """What the lanes did in one run. Scans count from 0; a scan's row says what stood after it."""
+
+    period_s: float
+    end: int  # how many scans there were
+    scans: list[int]
+    rows: list[tuple[tuple, ...]]
+    places: Mapping[str, tuple[int, int]]  # lane -> where it stands in a row
+    aliases: Mapping[str, str]  # name of the wiring -> lane
+    steps: Sequence[str] = ()  # the devices of the lane `Step`
+    cut: bool = False  # it was ended before its time
+    _lanes: dict[str, Signal] = field(default_factory=dict, repr=False)
+
+    def lane(self, name: str) -> Signal:
+        """The changes of one lane: a device, a name of the wiring or a quantity of the plant."""
+        lane = self.aliases.get(name, name)
+        if lane not in self._lanes:
+            if lane == STEP:
+                group, named = self.places[STEP][0], self.steps
+                texts = [" ".join(step for step, on in zip(named, row[group], strict=False) if on) for row in self.rows]
+                self._lanes[lane] = compressed(zip(self.scans, texts, strict=True))
+            elif lane not in self.places:
+                known = ", ".join([*self.aliases, *(place for place in self.places if place not in self.aliases.values())])
+                raise EcsimError(f"there is no lane {name!r} in this exercise; there are {known}")
+            else:
+                group, place = self.places[lane]
+                values = [row[group][place] for row in self.rows]
+                self._lanes[lane] = compressed(zip(self.scans, values, strict=True))
+        return self._lanes[lane]
+
+    def signal(self, text: str) -> Signal:
+        """A condition as a signal."""
+        return condition(text).over(self.lane, self.period_s)
+
+    def intervals(self, text: str) -> list[tuple[int, int]]:
+        """Where a condition holds: (first scan, first scan behind it)."""
+        return intervals(self.signal(text), self.end)
+
+    def seconds(self, scan: int) -> float:
+        """When a scan began, in seconds of the run."""
+        return round(scan * self.period_s, 6)
+
+    def up_to(self, scan: int) -> "Trace":
+        """The same run, ended behind a scan."""
+        if scan + 1 >= self.end:
+            return self
+        count = next((place for place, when in enumerate(self.scans) if when > scan), len(self.scans))
+        return Trace(self.period_s, scan + 1, self.scans[:count], self.rows[:count], self.places, self.aliases, self.steps, cut=True)
+
+    @cached_property
+    def names(self) -> dict[str, str]:
+        """Lane -> its name in the wiring."""
+        return {lane: name for name, lane in self.aliases.items()}
+
+
+class Run:
+    """One scenario under way on a Plc that is switched on anew. It is the recording of its own session."""
+
+    def __init__(self, exercise: "Exercise", plc: Plc, scenario: Scenario, values: Mapping[str, Any]):
+        self.plc, self.scenario, self.values = plc, scenario, dict(values)
+        plant = exercise.plant() if scenario.plant is ... else chosen(scenario.plant, values)
+        self.plant = plant
+        self.names = {point.name: device for device, point in exercise.wiring.items()}
+        self.session = Session(plc, plant, name=f"{exercise.name}: {scenario.name}", speed=None, record=self)
+        self.period_s = plc.period_us / 1e6
+        self.end = round(chosen(scenario.seconds, values) / self.period_s)
+        self._script = list(chosen(scenario.script, values))
+        self._first = plc.scans
+        self._generation = plc.memory.generation
+        self._look_at(exercise)
+        self.scans: list[int] = []
+        self.rows: list[tuple] = []
+        self._last: tuple | None = None
+        self._position, self._since = 0, 0  # the act that comes next, and the scan from which it may
+        self._due: int | None = None  # the scan before which it is done, None while it waits for its condition
+        self._releases: list[tuple[int, tuple[str, ...]]] = []
+        self._journal: list[tuple[int, tuple]] = []  # scan -> where the script was before it
+        self._until: int | None = None
+        plc.run()
+        self._plan()
+        self._act(0)
+
+    def _look_at(self, exercise: "Exercise") -> None:
+        """One getter for each list that lanes come from."""
+        plc, lists = self.plc, self.plc.memory.lists
+        areas: dict[str, list[tuple[str, int]]] = {}
+        for name in exercise.wiring:
+            device, _ = plc.memory.parse(name)
+            areas.setdefault(device.area, []).append((name, device.number))
+        steps = plc.in_use(("S",))
+        self.steps = [str(step) for step in steps]
+        self.places: dict[str, tuple[int, int]] = {}
+        self._looks: list[tuple[Callable, Any]] = []
+        for area, devices in areas.items():
+            self.places |= {name: (len(self._looks), place) for place, (name, _) in enumerate(devices)}
+            self._looks.append((_getter([number for _, number in devices]), lists[area]))
+        if self.plant is not None and exercise.quantities:
+            self.places |= {name: (len(self._looks), place) for place, name in enumerate(exercise.quantities)}
+            self._looks.append((_attributes(exercise.quantities), self.plant))
+        if steps:
+            self.places[STEP] = len(self._looks), 0
+            self._looks.append((_getter([step.number for step in steps]), lists["S"]))
+
+    # -- the run ------------------------------------------------------------------------------------------------
+
+    def to(self, scan: int | None = None) -> Trace:
+        """Go on until so many scans are done, to the scenario's end unless given, and tell what was noted."""
+        step, plc, first = self.session._step, self.plc, self._first
+        cut = scan is not None and scan < self.end
+        self._stop_at = scan if cut else self.end
+        while plc.scans - first < self._stop_at:
+            step()
+        return Trace(self.period_s, self._stop_at, self.scans, self.rows, self.places, self.names, self.steps, cut)
+
+    def sample(self) -> None:
+        """After each scan: note what has changed, and let the operator act before the next one."""
+        now = tuple([look(source) for look, source in self._looks])
+        done = self.plc.scans - self._first
+        if now != self._last:
+            self._last = now
+            self.scans.append(done - 1)
+            self.rows.append(now)
+            if self._due is None and self._position < len(self._script) and self._holds(self._script[self._position].when):
+                self._due = done + self._scans(self._script[self._position].after)
+            if self._until is None and self.scenario.until is not None and self._holds(self.scenario.until):
+                self._until = done + self._scans(self.scenario.tail)
+                self._stop_at = min(self._stop_at, self._until)
+        if done == self._due or (self._releases and done >= self._releases[0][0]):
+            self._act(done)
+
+    def _scans(self, seconds: float) -> int:
+        return round(seconds / self.period_s)
+
+    def _plan(self) -> None:
+        """When the next act is due."""
+        self._due = None
+        if self._position < len(self._script):
+            do = self._script[self._position]
+            if do.at is not None:
+                self._due = max(self._since, self._scans(do.at))
+            elif do.when is None or self._holds(do.when):
+                self._due = self._since + self._scans(do.after)
+
+    def _holds(self, text: str | None) -> bool:
+        """Whether a condition over lanes holds now."""
+        if text is None or self._last is None:
+            return False
+        asked: Condition = condition(text)
+        return bool(asked.expression(*map(self._value, asked.names)))
+
+    def _value(self, name: str) -> Any:
+        lane = self.names.get(name, name)
+        if lane not in self.places:
+            raise EcsimError(f"the scenario {self.scenario.name} asks for {name!r}; there are {', '.join([*self.names, *self.places])}")
+        group, place = self.places[lane]
+        return self._last[group][place]
+
+    def _act(self, done: int) -> None:
+        """What the operator does before the scan with this number."""
+        self._journal.append((done, (self._position, self._since, self._due, tuple(self._releases))))
+        while self._releases and self._releases[0][0] <= done:
+            for device in self._releases.pop(0)[1]:
+                self.plc[device] = 0
+        while self._due is not None and self._due <= done:
+            do = self._script[self._position]
+            devices = {self.names.get(name, name): value for name, value in do.set.items()}
+            self.plc.set(devices)
+            if do.hold is not None:
+                self._releases = sorted([*self._releases, (done + max(1, self._scans(do.hold)), tuple(devices))])
+            if do.act is not None:
+                do.act(self.plc, self.plant)
+            self._position, self._since = self._position + 1, done
+            self._plan()
+
+    def forget(self, time_us: int) -> None:
+        """The session went back to a moment: what was noted, and what the operator did after it, has not happened."""
+        done = self.plc.scans - self._first
+        while self.scans and self.scans[-1] >= done:
+            self.scans.pop()
+            self.rows.pop()
+        while self._journal and self._journal[-1][0] > done:
+            self._position, self._since, self._due, releases = self._journal.pop()[1]
+            self._releases = list(releases)
+        self._last = self.rows[-1] if self.rows else None
+
+
+def _getter(numbers: list[int]) -> Callable[[Sequence], tuple]:
+    return itemgetter(*numbers, numbers[0])
+
+
+def _attributes(names: Sequence[str]) -> Callable[[Any], tuple]:
+    return attrgetter(*names, names[0])
