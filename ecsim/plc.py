@@ -22,6 +22,7 @@ from .hardware.eeprom import Eeprom
 from .hardware.faults import MEANINGS, STOPPING, Faults
 from .hardware.inputs import Inputs
 from .hardware.interrupts import POWER_LOSS, Interrupts
+from .hardware.limits import FrequencyLimits
 from .hardware.meters import Meters
 from .hardware.modules import Rack
 from .hardware.pots import Potentiometers
@@ -99,13 +100,15 @@ class Plc:
         self.outputs = PulseOutputs(self.memory, self.inputs, self.interrupts, lambda: self.period_us, self._awake)
         self.servo = ServoReader(self.memory, self._awake)
         watchers += (self.counters, self.meters, self.interrupts, self.outputs)
+        self.limits = FrequencyLimits(self.inputs, self.counters, self.meters, self.interrupts, self._awake)
+        self.inputs.check = self.limits.check
         self.rtc = RealTimeClock(self.memory, self._awake)
         self.eeprom = Eeprom(self.memory, self._awake)
         self.pots = Potentiometers(self.model.limits.get("potentiometers", 0), self._awake)
         self.modules = Rack(self.memory, self._awake)
         self.units: dict[str, Unit] = {
             "counters": self.counters, "meters": self.meters, "inputs": self.inputs, "interrupts": self.interrupts,
-            "outputs": self.outputs, "servo": self.servo,
+            "outputs": self.outputs, "servo": self.servo, "limits": self.limits,
             "rtc": self.rtc, "eeprom": self.eeprom, "pots": self.pots, "modules": self.modules,
         }  # fmt: skip
         self.timers = Timers(self.memory, self.clock)
@@ -607,7 +610,15 @@ class Plc:
 
         A later `plc["X0"] = 1` ends the signal. `bounce_ms` lets the contact bounce that long behind each edge.
         """
-        self._drive(name, Train(self.clock[0], round(ms * 1000), max(1, count), count), bounce_ms)
+        self._drive(name, Train(self.clock[0], self._span(count, ms), max(1, count), count), bounce_ms)
+
+    @staticmethod
+    def _span(count: int, ms: float) -> int:
+        """The us that so many pulses are to take; raises EcsimError for what cannot be."""
+        if not isinstance(count, Integral) or count < 0:
+            raise EcsimError(f"{count!r} pulses; give a whole number from 0 on")
+        within("ms", ms, 0.001, 1e12)
+        return round(ms * 1000)
 
     def square(self, name: str, hz: float, duty: float = 0.5) -> None:
         """Give an input pulses of `hz` without end; `duty` is the share of the period that is ON."""
@@ -620,7 +631,7 @@ class Plc:
         """Give two inputs the phases of an encoder: `count` cycles in the next `ms` milliseconds, A leading for direction 1, B for -1."""
         if direction not in (1, -1):
             raise EcsimError(f"the direction is 1 or -1, not {direction!r}")
-        signals = quadrature(self.clock[0], round(ms * 1000), max(1, count or 1), count, direction)
+        signals = quadrature(self.clock[0], self._span(count or 0, ms), max(1, count or 1), count, direction)
         for name, signal in zip((a, b), signals, strict=True):
             self._drive(name, signal, 0)
 
@@ -648,12 +659,11 @@ class Plc:
         if bounce_ms:
             signal = bouncing(signal, self.clock[0], round(bounce_ms * 1000))
         self.inputs.drive(number, signal, self.clock[0])
-        self.counters.check()
 
     @property
     def warnings(self) -> list[str]:
-        """What exceeds the frequencies that the counters can follow (8.1.4), in words."""
-        return list(self.counters.warnings)
+        """What exceeds the frequencies that counters, SPD, pulse capture and interrupts can follow (8.1.4), in words."""
+        return list(self.limits.warnings)
 
     def _read_only(self, device: Device | Bits, kind: DataType) -> bool:
         """Whether a device lies, with a part at least, where only the system writes (3.1.9)."""

@@ -23,7 +23,10 @@ AT_ONCE = 6  # 6.10.2: so many comparisons may be driven at one time
 MODULUS = 1 << 32
 LOW, HIGH = -(1 << 31), (1 << 31) - 1
 APART = 8  # us: below this period two phases may fall on one microsecond
-SUM_KHZ = {"": 80, "table": 30, "zone": 20}  # 8.1.4
+WORTH = {  # what an edge counts: [of the second input?][its level][state of the first input]
+    "up/down": (((0, 0), (1, 1)), ((0, 0), (-1, -1))),
+    "phases": (((0, 0), (0, 0)), ((0, -1), (0, 1))),  # 8.1.1: with A ON, B turning ON counts up and B turning OFF counts down
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +60,6 @@ class Counters(Unit):
         self.claims: dict[int, tuple[int, int]] = {}  # HCNT: claim -> counter, preset
         self.comparisons: dict[int, Comparison] = {}  # in the order in which they became effective
         self.presets: dict[int, int] = {}  # of the driven counters
-        self.warnings: list[str] = []
 
     # -- commands -----------------------------------------------------------------------------------------------
 
@@ -73,7 +75,7 @@ class Counters(Unit):
         if begins:
             self.wake()
             self._control(number, now)
-            self.check()
+            self.inputs.check()
 
     def compare(self, claim: int, comparison: Comparison) -> None:
         """One of the comparison instructions is driven; beyond six it has to wait (6.10.2, rule 3)."""
@@ -92,7 +94,7 @@ class Counters(Unit):
             self.comparisons[claim] = comparison
             if tabular:
                 self._show(comparison)
-            self.check()
+            self.inputs.check()
         elif known.kind in ("outputs", "data"):
             if not known.over:
                 self._show(known)
@@ -113,7 +115,6 @@ class Counters(Unit):
         self.claims.clear()
         self.comparisons.clear()
         self.presets.clear()
-        self.warnings.clear()
         self.time = now
         self.wake(False)
 
@@ -128,9 +129,12 @@ class Counters(Unit):
         return not (counter.reset is not None and terminals[counter.reset]) and (counter.start is None or terminals[counter.start])
 
     def _control(self, number: int, now: int) -> None:
-        """Look at the reset input: while it is ON value and contact are cleared (6.10.4)."""
+        """Look at the reset input: while it is ON, be it for less than a microsecond, value and contact are cleared (6.10.4)."""
         reset = self.model.fast_counters[number].reset
-        if reset is not None and self.inputs.terminals[reset]:
+        if reset is None:
+            return
+        signal = self.inputs.signals.get(reset)
+        if self.inputs.terminals[reset] or (signal is not None and signal.count(True, now - 1, now)):
             self.memory.lists["C"][number] = 0
             self.memory.lists["CB"][number] = False
 
@@ -148,10 +152,7 @@ class Counters(Unit):
         """What one edge counts; `a` is the state of phase A."""
         if fast.mode == "single":
             return (-1 if self._bits()[self.model.relays["counter direction"] + number] else 1) if level else 0
-        if fast.mode == "up/down":
-            return (1 if source == fast.inputs[0] else -1) if level else 0
-        # 8.1.1: with A ON, B turning ON counts up and B turning OFF counts down
-        return (1 if level else -1) if source == fast.inputs[1] and a else 0
+        return WORTH[fast.mode][source != fast.inputs[0]][level][a]
 
     # -- runs ---------------------------------------------------------------------------------------------------
 
@@ -182,18 +183,24 @@ class Counters(Unit):
     def _merged(self, number: int, after: int, until: int) -> Iterator[tuple[int, int]]:
         """(moment, worth) of each counting edge in (after, until], where both inputs move."""
         fast, signals = self.model.fast_counters[number], self.inputs.signals
-        first, _second = fast.inputs
-        a = signals[first].level(after) if first in signals else self.inputs.terminals[first]
-        edges = {source: signals[source].next(after) for source in fast.inputs if source in signals}
+        first, second = (signals[source].edges(after) if source in signals else iter(()) for source in fast.inputs)
+        a = signals[fast.inputs[0]].level(after) if fast.inputs[0] in signals else self.inputs.terminals[fast.inputs[0]]
+        of_first, of_second = WORTH[fast.mode]
+        over = until + 1, False
+        one, two = next(first, over), next(second, over)
         while True:
-            source = min((s for s, edge in edges.items() if edge), key=lambda s: (edges[s][0], s), default=None)
-            if source is None or edges[source][0] > until:
-                return
-            moment, level = edges[source]
-            edges[source] = signals[source].next(moment)
-            if source == first:
-                a = level
-            worth = self._worth(number, fast, source, level, a)
+            if one[0] <= two[0]:
+                moment, level = one
+                if moment > until:
+                    return
+                worth = of_first[level][a]
+                a, one = level, next(first, over)
+            else:
+                moment, level = two
+                if moment > until:
+                    return
+                worth = of_second[level][a]
+                two = next(second, over)
             if worth:
                 yield moment, worth
 
@@ -207,7 +214,7 @@ class Counters(Unit):
             moment = self._controls(self.model.fast_counters[number], limit)
             limit = limit if moment is None else moment
             hit = None
-            comparisons = [c for c in self.comparisons.values() if c.counter == number and not c.over] if run is not None else ()
+            comparisons = self._looking(number) if run is not None else ()
             if comparisons:
                 if isinstance(run, tuple):
                     signal, rising, worth = run
@@ -225,7 +232,7 @@ class Counters(Unit):
         found = None
         for source in (fast.reset, fast.start):
             signal = self.inputs.signals.get(source) if source is not None else None
-            edge = signal.next(self.time) if signal is not None else None
+            edge = next(signal.edges(self.time), None) if signal is not None else None
             if edge is not None and edge[0] <= until and (found is None or edge[0] < found):
                 found = edge[0]
         return found
@@ -267,7 +274,7 @@ class Counters(Unit):
                 signal, rising, worth = run
                 n = signal.count(rising, since, now)
                 if n:
-                    self._count(number, worth, n)
+                    (self._counts if self.comparisons else self._count)(number, worth, n)
             elif run is not None:
                 for _, worth in run(number, since, now):
                     self._count(number, worth, 1)
@@ -278,8 +285,20 @@ class Counters(Unit):
 
     # -- counting -----------------------------------------------------------------------------------------------
 
+    def _counts(self, number: int, worth: int, n: int) -> None:
+        """`n` edges of the same worth. More than one can be needed to the next comparison only if they fall on one microsecond."""
+        while n:
+            met = [self._distance(c, self.memory.lists["C"][number], worth) for c in self._looking(number)]
+            step = min([n, *met])
+            self._count(number, worth, step)
+            n -= step
+
+    def _looking(self, number: int) -> list[Comparison]:
+        """The comparisons that a count of this counter may meet."""
+        return [c for c in self.comparisons.values() if c.counter == number and not c.over]
+
     def _count(self, number: int, worth: int, n: int) -> None:
-        """`n` edges of the same worth; a comparison can be met by the last one only."""
+        """`n` edges of the same worth; a comparison is met by the last one at most."""
         values = self.memory.lists["C"]
         exact = values[number] + worth * n
         value = values[number] = _wrapped(exact)
@@ -352,38 +371,10 @@ class Counters(Unit):
         self._put("table value", split(self._wanted(comparison)))
         self._put("table record", (signed16(comparison.record + 1),))
 
-    # -- limits -------------------------------------------------------------------------------------------------
-
-    def check(self) -> None:
-        """Hold the signals of the driven counters against the greatest frequencies of 8.1.4; what exceeds them is noted in `warnings`."""
-        total, use = 0.0, ""
-        for number in self.presets:
-            fast = self.model.fast_counters[number]
-            compared = {c.kind for c in self.comparisons.values() if c.counter == number}
-            phases = fast.mode == "phases"
-            limit = fast.khz
-            if "zone" in compared:
-                limit, use = min(limit, 4 if phases else 5), "zone"
-            elif compared:
-                limit, use = min(limit, 5 if phases else 10), use or "table"
-            for source in fast.inputs[:1] if phases else fast.inputs:
-                signal = self.inputs.signals.get(source)
-                khz = signal.hertz / 1000 if signal is not None else 0.0
-                total += khz
-                if khz > limit + 1e-9:
-                    self._warn(f"C{number} gets {khz:g} kHz, it counts up to {limit} kHz")
-        if total > SUM_KHZ[use] + 1e-9:
-            self._warn(f"the counters get {total:g} kHz together, {SUM_KHZ[use]} kHz are allowed")
-
-    def _warn(self, text: str) -> None:
-        text += " (manual 8.1.4)"
-        if text not in self.warnings:
-            self.warnings.append(text)
-
     def snapshot(self) -> tuple:
-        return self.time, dict(self.claims), dict(self.comparisons), dict(self.presets), list(self.warnings)
+        return self.time, dict(self.claims), dict(self.comparisons), dict(self.presets)
 
     def restore(self, snapshot: tuple) -> None:
-        self.time, claims, comparisons, presets, warnings = snapshot
-        self.claims, self.comparisons, self.presets, self.warnings = dict(claims), dict(comparisons), dict(presets), list(warnings)
+        self.time, claims, comparisons, presets = snapshot
+        self.claims, self.comparisons, self.presets = dict(claims), dict(comparisons), dict(presets)
         self.wake(bool(self.claims))

@@ -1,6 +1,7 @@
 """Inputs: terminals, signals on them, the input filter, the input image and pulse capture (2.1.2, 2.2.1, 3.1.3, 8.2)."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from itertools import takewhile
 
 from ..memory import Memory
 from .signals import Signal, steady
@@ -28,6 +29,7 @@ class Inputs(Unit):
         self.catching = True
         self.capture = memory.model.relays.get("capture")
         self.changed = True
+        self.check: Callable[[], None] = lambda: None  # looks at the frequencies; given after all units are made
 
     def assign(self, taken: Iterable[int], watched: Iterable[int]) -> None:
         """Tell which inputs the program's counters and SPD need, and which others it watches between scans: none of them is filtered."""
@@ -46,10 +48,14 @@ class Inputs(Unit):
             self.wake(bool(self.signals))
         if self.terminals[number] is level:
             return
-        self.terminals[number] = level
         self.changed = True
         if self.filter_us and number in self.filtered and number not in self.unfiltered:
             self.waiting[number] = (level, now + self.filter_us)
+        self._switch(number, level, now)
+
+    def _switch(self, number: int, level: bool, now: int) -> None:
+        """The level of a terminal changes: captures and what watches edges are told."""
+        self.terminals[number] = level
         if number < FAST:
             if level:
                 self._catch(number)
@@ -57,13 +63,23 @@ class Inputs(Unit):
                 watcher.edge(number, level, now)
 
     def drive(self, number: int, signal: Signal, now: int) -> None:
-        """Put a signal on a terminal; after its end the last level stays."""
+        """Put a signal on a terminal; after its end the last level stays. Its edges of this very moment come at once."""
+        for _, level in takewhile(lambda edge: edge[0] <= now, signal.edges(now - 1)):
+            self.set(number, level, now)
         self.set(number, signal.level(now), now)
         if not self.signals:
             self.time = now
         self.signals[number] = signal
         self.changed = True
         self.wake()
+        self.check()
+
+    def follow(self, now: int) -> None:
+        """An output that inputs may be wired to has begun: it can be ON from its first moment, which is an edge of this moment."""
+        for number, signal in self.signals.items():
+            level = signal.level(now)
+            if level is not self.terminals[number]:
+                self._switch(number, level, now)
 
     def set_filter(self, filter_us: int) -> None:
         """Change the filter's time, also for the levels that wait to be taken over."""

@@ -79,6 +79,7 @@ class Interrupts(Unit):
             if event in routines
         ]
         self.wake(bool(routines))
+        self.inputs.check()
 
     def look(self, now: int) -> None:
         """A timed interrupt begins its first period when it is enabled, and again when its period was changed."""
@@ -102,6 +103,11 @@ class Interrupts(Unit):
                     found.append((moment, event))
         return found
 
+    def _times(self, event: int, now: int) -> int:
+        """How many edges of an event fall on this microsecond."""
+        signal = self.inputs.signals[event % FALLING]
+        return signal.count(event < FALLING, now - 1, now)
+
     def next(self, until: int) -> int | None:
         first = None
         for moment, _ in self.due.values():
@@ -116,7 +122,8 @@ class Interrupts(Unit):
         if self.edges and self.enabled and self.inputs.signals:
             for moment, event in self._edges(now):
                 if moment == now:
-                    self.fire(event)
+                    for _ in range(self._times(event, now)):
+                        self.fire(event)
         for event, (moment, period) in self.due.items():
             if moment == now:
                 self.due[event] = now + period, period

@@ -40,6 +40,7 @@ class Meters(Unit):
             self.meters[claim] = Meter(source, window_ms * 1000, target, now)
             self._show(self.meters[claim], now)
             self.wake()
+            self.inputs.check()
         elif (meter.window, meter.target) != (window_ms * 1000, target):
             self.meters[claim] = replace(meter, window=window_ms * 1000, target=target)
 

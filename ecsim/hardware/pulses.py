@@ -5,8 +5,9 @@ stop the pulses; SM82/83 tell that pulses come; SD50 to SD55 count them, SD80 to
 """
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from itertools import islice
 
 from ..devices import Device
 from ..memory import Memory
@@ -104,6 +105,9 @@ class PulseOutputs(Unit):
         axis.segments = segments if self.open(axis.number) else ()
         self._show(axis, now)
         self.wake()
+        if self.inputs.signals:
+            self.inputs.follow(now)
+            self.inputs.check()
 
     def refrain(self, axis: Axis, claim: int, now: int) -> None:
         """An operand has become illegal: no pulses, the output is free."""
@@ -120,6 +124,7 @@ class PulseOutputs(Unit):
             axis.segments = (cut, replace(following[0], start=begin), *following[1:])
         else:
             axis.segments, axis.done = (replace(following[0], start=begin), *following[1:]), 0
+        self.inputs.check()
 
     def release(self, claim: int, now: int) -> None:
         for axis in self.axes:
@@ -175,8 +180,7 @@ class PulseOutputs(Unit):
             moments = [axis.end, axis.clearing or None]
             if axis.home is not None and axis.home.dog.area == "X":
                 signal = self.inputs.signals.get(axis.home.dog.number)
-                edge = signal.next(self.inputs.time) if signal is not None else None
-                moments.append(edge[0] if edge is not None else None)
+                moments += [moment for moment, _ in islice(signal.edges(self.inputs.time), 1)] if signal is not None else []
             for moment in moments:
                 if moment is not None and moment <= until and (first is None or moment < first):
                     first = moment
@@ -335,7 +339,7 @@ class Wired:
         if isinstance(part, Segment):
             n = part.counted(moment) if rising else part.completed(moment)
         else:
-            n = part.started(moment if rising else moment - part.width)
+            n = part.started(moment) if rising else part.ended(moment)
         return n if pulses is None else min(n, pulses)
 
     def count(self, rising: bool, after: int, until: int) -> int:
@@ -344,14 +348,18 @@ class Wired:
     def time(self, rising: bool, after: int, n: int) -> int | None:
         for part, pulses in self._parts(after):
             passed = self._passed(part, pulses, rising, after)
+            pulses = part.most(rising) if pulses is None and isinstance(part, Wave) else pulses
             if pulses is None or passed + n <= pulses:
                 return part.edge(rising, passed + n - 1)
             n -= pulses - passed
         return None
 
-    def next(self, after: int) -> tuple[int, bool] | None:
-        found = [(moment, rising) for rising in (False, True) if (moment := self.time(rising, after, 1)) is not None]
-        return min(found, default=None)
+    def edges(self, after: int) -> Iterator[tuple[int, bool]]:
+        """Every edge after a moment, as (moment, level)."""
+        rising = not self.level(after)
+        while (moment := self.time(rising, after, 1)) is not None:
+            yield moment, rising
+            after, rising = (moment, False) if rising else (moment, True)
 
     def before(self, moment: int) -> int | None:
         last = None

@@ -1,15 +1,18 @@
 """Signals on an input over time: pulse trains in closed form, recorded or computed edges, bounce.
 
-A signal answers four questions without stepping through its edges: its level at a moment, its next edge, how many edges
-of one sense lie in a stretch of time, and when the n-th of them comes. Times are whole microseconds; a stretch (a, b]
-leaves out its begin. `end` is the moment from which nothing changes, None for a signal without end.
+A signal answers three questions without stepping through its edges: its level at a moment, how many edges of one sense
+lie in a stretch of time, and when the n-th of them comes; `edges` steps where that is wanted. Times are whole
+microseconds; a stretch (a, b] leaves out its begin. Several edges may fall on one microsecond: they keep their order, and
+the level is that behind the last. `end` is the moment from which nothing changes, None for a signal without end.
 """
 
 import itertools
 from bisect import bisect_right
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Protocol
+
+from ..errors import EcsimError
 
 PARTS = 1000  # a phase is given in so many parts of a period
 STEADY = 3  # so many intervals tell all that a pulse train has
@@ -25,7 +28,7 @@ class Signal(Protocol):
     @property
     def hertz(self) -> float: ...
     def level(self, moment: int) -> bool: ...
-    def next(self, after: int) -> tuple[int, bool] | None: ...
+    def edges(self, after: int) -> Iterator[tuple[int, bool]]: ...
     def count(self, rising: bool, after: int, until: int) -> int: ...
     def time(self, rising: bool, after: int, n: int) -> int | None: ...
     def before(self, moment: int) -> int | None: ...
@@ -60,12 +63,16 @@ class Train:
     def level(self, moment: int) -> bool:
         return self._until(self.rise, moment) > self._until(self.fall, moment)
 
-    def next(self, after: int) -> tuple[int, bool] | None:
-        rises, falls = self._until(self.rise, after), self._until(self.fall, after)
-        rising = rises == falls
-        if rising and rises == self.total:
-            return None
-        return self._at(rises if rising else falls, self.rise if rising else self.fall), rising
+    def edges(self, after: int) -> Iterator[tuple[int, bool]]:
+        """Every edge after a moment, as (moment, level)."""
+        index = self._until(self.fall, after)
+        if self._until(self.rise, after) > index:
+            yield self._at(index, self.fall), False
+            index += 1
+        while index != self.total:
+            yield self._at(index, self.rise), True
+            yield self._at(index, self.fall), False
+            index += 1
 
     def before(self, moment: int) -> int | None:
         """The last edge at or before a moment."""
@@ -96,7 +103,7 @@ class Train:
 
 @dataclass(frozen=True, slots=True)
 class Edges:
-    """A recorded or computed signal: it changes at each of `times` (rising ones, in order) and begins at `first`."""
+    """A recorded or computed signal: it changes at each of `times` (in order of time) and begins at `first`."""
 
     times: tuple[int, ...]
     first: bool = False
@@ -112,9 +119,10 @@ class Edges:
     def level(self, moment: int) -> bool:
         return self.first ^ bool(bisect_right(self.times, moment) & 1)
 
-    def next(self, after: int) -> tuple[int, bool] | None:
-        place = bisect_right(self.times, after)
-        return (self.times[place], self.first ^ (place & 1 == 0)) if place < len(self.times) else None
+    def edges(self, after: int) -> Iterator[tuple[int, bool]]:
+        """Every edge after a moment, as (moment, level)."""
+        for place in range(bisect_right(self.times, after), len(self.times)):
+            yield self.times[place], self.first ^ (place & 1 == 0)
 
     def before(self, moment: int) -> int | None:
         place = bisect_right(self.times, moment)
@@ -150,33 +158,29 @@ def quadrature(start: int, span: int, cycles: int, count: int | None, direction:
 
 
 def changes(points: Iterable[tuple[float, int]], start: int, first: bool) -> Edges:
-    """A signal from (ms after `start`, level) points, in order of time; points that change nothing are passed over."""
+    """A signal from (ms after `start`, level) points, in order of time; points that change nothing are passed over.
+
+    Raises EcsimError for a point before `start` or before the one in front of it.
+    """
     times: list[int] = []
-    level = first
+    level, before = first, 0.0
     for ms, value in points:
-        moment = start + round(ms * 1000)
-        if bool(value) != level and (not times or moment > times[-1]):
-            times.append(moment)
+        if not ms >= before:
+            raise EcsimError(f"a signal has a point at {ms!r} ms behind one at {before:g} ms; give its points in order of time, from 0 on")
+        before = ms
+        if bool(value) != level:
+            times.append(start + round(ms * 1000))
             level = bool(value)
     return Edges(tuple(times), first)
 
 
-def all_edges(signal: Signal, after: int) -> Sequence[int]:
-    """The times of every edge of a signal with an end."""
-    times: list[int] = []
-    while (edge := signal.next(after)) is not None:
-        after = edge[0]
-        times.append(after)
-    return times
-
-
 def bouncing(signal: Signal, after: int, bounce_us: int, contacts: int = 3) -> Edges:
     """A signal as a worn contact gives it: behind each edge it opens and closes `contacts` times within `bounce_us`."""
-    edges = all_edges(signal, after)
+    edges = [moment for moment, _ in signal.edges(after)]
     times: list[int] = []
     for place, moment in enumerate(edges):
         times.append(moment)
-        room = min(bounce_us, (edges[place + 1] if place + 1 < len(edges) else moment + bounce_us + 1) - moment - 1)
+        room = max(0, min(bounce_us, (edges[place + 1] if place + 1 < len(edges) else moment + bounce_us + 1) - moment - 1))
         # Bounces grow shorter: at the squares of even parts of the time, counted from its end.
         extra = sorted({moment + room - room * k * k // (2 * contacts) ** 2 for k in range(2 * contacts)} - {moment})
         times += extra[: len(extra) // 2 * 2]

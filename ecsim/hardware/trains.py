@@ -96,7 +96,18 @@ class Wave:
     end: None = None
 
     def started(self, moment: int) -> int:
-        return (moment - self.start) // self.period + 1 if self.width and moment >= self.start else 0
+        """Pulses that have turned ON by a moment: one for good where there is no pause."""
+        if not self.width or moment < self.start:
+            return 0
+        return 1 if self.width == self.period else (moment - self.start) // self.period + 1
+
+    def ended(self, moment: int) -> int:
+        """Pulses that have turned OFF again."""
+        return 0 if self.width == self.period else self.started(moment - self.width)
+
+    def most(self, rising: bool) -> int | None:
+        """How many edges of a sense there can be, None for no limit."""
+        return None if 0 < self.width < self.period else int(rising and self.width > 0)
 
     def counted(self, moment: int) -> int:
         return 0

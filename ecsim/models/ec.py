@@ -59,6 +59,7 @@ EC20 = Model(
     limits={
         "steps": 12_000, "MC nesting": 7, "FOR nesting": 8, "CALL nesting": 6, "subroutines": 64, "joined steps": 16,
         "flows": 20, "bit variables": 16, "word variables": 16, "global variables": 500, "stack": 8, "waveforms": 100, "potentiometers": 2,
+        **ec_fast.LIMITS,
         "run inputs": 16, "power loss ms": 100, **ec_modules.LIMITS_EC20,
     },
     filter_inputs=0o20,

@@ -35,6 +35,14 @@ REGISTERS = {
 # 6.17.6: SD84 to SD87; appendix 2: SD88 and SD89. 100000 = 1 * 65536 + 34464
 INITIAL = {84: 5000, 85: 1, 86: 34464 - 65536, 87: 1000, 88: 100, 89: 100}
 
+# The greatest frequencies. 8.1.4: of a counter with DHSZ or another comparison, and of all counters and SPD together in either case.
+# 6.10.8: of SPD. 8.2: with pulse capture. 9.4: of inputs that ask for interrupts.
+LIMITS = {
+    "kHz compared single": 10, "kHz compared phases": 5, "kHz zone single": 5, "kHz zone phases": 4,
+    "kHz together": 80, "kHz compared together": 30, "kHz zone together": 20, "kHz metered": 10, "kHz captured together": 80,
+    "Hz interrupting": 200, "Hz interrupting together": 1000,
+}  # fmt: skip
+
 EC20 = {"fast_counters": FAST_COUNTERS, "events": _EVENTS_EC20}
 EC10 = {"fast_counters": FAST_COUNTERS, "events": _EVENTS_EC10, "least_ramp_ms": 50}
 RELAYS_EC10 = {"clear signal": 85}
