@@ -12,6 +12,7 @@ from typing import Any
 
 from .assembler import Program, assemble
 from .assembler.inputs import occupied
+from .comms.protocols import PROTOCOLS
 from .devices import Bits, Device
 from .engines import CompiledEngine, SteppingEngine, Trace
 from .engines.access import functions
@@ -28,6 +29,7 @@ from .hardware.modules import Rack
 from .hardware.pots import Potentiometers
 from .hardware.pulses import PulseOutputs, Wired
 from .hardware.rtc import RealTimeClock
+from .hardware.serial import Port
 from .hardware.servo import ServoReader
 from .hardware.signals import PARTS, Signal, Train, bouncing, changes, quadrature
 from .hardware.timers import Timers
@@ -111,6 +113,10 @@ class Plc:
             "outputs": self.outputs, "servo": self.servo, "limits": self.limits,
             "rtc": self.rtc, "eeprom": self.eeprom, "pots": self.pots, "modules": self.modules,
         }  # fmt: skip
+        self.ports = [
+            Port(number, self.memory, self.interrupts, self.clock, self._awake, PROTOCOLS) for number in range(len(self.model.ports))
+        ]
+        self.units |= {port.name: port for port in self.ports}
         self.timers = Timers(self.memory, self.clock)
         self.clocks = Clocks(self.memory)
         self.running = False
@@ -159,6 +165,8 @@ class Plc:
         if system.input_filter_ms is not None:
             self.inputs.usual_us = round(system.input_filter_ms * 1000)
             self.inputs.set_filter(self.inputs.usual_us)
+        for port, settings in zip(self.ports, (system.port0, system.port1), strict=False):
+            port.set_up(settings)
 
     # -- the program --------------------------------------------------------------------------------------------
 
@@ -347,6 +355,8 @@ class Plc:
                 registers[numbers[meaning]] = value
         for number, value in model.initial_registers.items():
             registers[number] = value
+        for port in self.ports:
+            port.show()
         self._tell("power up", power_up)
         self._tell("constant scan", self.system.constant_scan_ms > 0)
         self._tell("system error", self.system_error != 0)
@@ -397,6 +407,13 @@ class Plc:
 
     def _one_scan(self) -> None:
         """One turn of the scan circle (2.1.2), cut before the input refresh."""
+        end = self.begin_scan()
+        if self._awake:
+            self.go_on(end)
+        self.end_scan(end)
+
+    def begin_scan(self) -> int:
+        """The scan up to its communication, in which no time passes; gives the moment in which it will end."""
         now = self.clock[0]
         if self.interrupts.queue:
             self._serve_queue()
@@ -412,13 +429,27 @@ class Plc:
             period = self.period_us
             if self._first or period != self._noted_us:
                 self._housekeeping(period)
-            if self._awake:
-                self._pass(now + period)
-            self.clock[0] = now + period
         else:
-            self.clock[0] = now + self.period_us
+            period = self.period_us
+        if self._awake:
+            self._communicate(now)
+        return now + period
+
+    def _communicate(self, now: int) -> None:
+        """The program has ended: units look at what it did, ports answer to what they were asked."""
+        if self.running:
+            self.interrupts.ended()
+            self.interrupts.time = now
             for unit in tuple(self._awake):
-                unit.advance(self.clock[0])
+                unit.look(now)
+        for unit in tuple(self._awake):
+            unit.serve(now)
+
+    def end_scan(self, end: int) -> None:
+        """The time of a scan has gone by."""
+        self.clock[0] = end
+        for unit in tuple(self._awake):
+            unit.advance(end)
         self.scans += 1
 
     def _execute(self) -> None:
@@ -453,19 +484,21 @@ class Plc:
         while self.interrupts.queue and self.running:
             self._interrupt(self.interrupts.routines[self.interrupts.queue.pop(0)])
 
-    def _pass(self, until: int) -> None:
-        """Time goes on to `until`, from event to event of the units that are awake; interrupt programs run at the time of their event."""
-        clock, awake, interrupts = self.clock, self._awake, self.interrupts
-        interrupts.ended()
-        interrupts.time = clock[0]
-        for unit in tuple(awake):
-            unit.look(clock[0])
-        while self.running:
-            first, moment = None, until + 1
-            for unit in awake:
+    def next_event(self, until: int) -> tuple[Unit | None, int]:
+        """The unit with the first event up to `until`, and its moment; None without one."""
+        first, moment, running = None, until + 1, self.running
+        for unit in self._awake:
+            if running or unit.in_stop:
                 due = unit.next(until)
                 if due is not None and due < moment:
                     first, moment = unit, due
+        return first, moment
+
+    def go_on(self, until: int) -> None:
+        """All events up to `until`, in order of time; interrupt programs run at the time of their event."""
+        clock, awake, interrupts = self.clock, self._awake, self.interrupts
+        while True:
+            first, moment = self.next_event(until)
             if first is None:
                 break
             clock[0] = moment
@@ -476,9 +509,6 @@ class Plc:
                 self._serve_queue()
                 for unit in tuple(awake):
                     unit.look(moment)
-        clock[0] = until
-        for unit in tuple(awake):
-            unit.advance(until)
 
     def _restart_units(self) -> None:
         """STOP or RUN: no command holds anything."""

@@ -1,33 +1,21 @@
 """The serial ports: their settings and, in simulated time, every character that they send and hear."""
 
+from collections import deque
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from ..errors import EcsimError
+from ..memory import Memory
 from ..models import Model
+from ..values import signed16
+from .interrupts import Interrupts
+from .unit import Unit
+from .wire import End, Framing, Wire
 
 PARITIES = ("none", "odd", "even")
 MODES = ("rtu", "ascii")
 _FRAMES = {"freeport": (9600, 8, "none", 1), "modbus": (19200, 8, "even", 1), "ecbus": (38400, 8, "even", 1)}  # the usual ones
-
-
-@dataclass(frozen=True, slots=True)
-class Framing:
-    """How one character stands on the line."""
-
-    baud: int
-    data_bits: int
-    parity: str
-    stop_bits: int
-
-    @property
-    def bits(self) -> int:
-        """The bits of a character, its start bit too."""
-        return 1 + self.data_bits + (self.parity != "none") + self.stop_bits
-
-    def after(self, count: int) -> int:
-        """How long `count` characters take, in whole microseconds."""
-        return count * self.bits * 1_000_000 // self.baud
 
 
 @dataclass(frozen=True)
@@ -104,3 +92,213 @@ def _whole(what: str, value: Any, low: int, high: int) -> None:
     """Raise EcsimError unless a value is a whole number within its range."""
     if not isinstance(value, int) or isinstance(value, bool) or not low <= value <= high:
         raise EcsimError(f"{what} is {value!r}; it is a whole number from {low} to {high}")
+
+
+class Protocol:
+    """What a port does with the characters that it hears; this one does nothing. Times are those of the PLC, in microseconds."""
+
+    busy = False  # whether the port has a task
+    due: int | None = None  # when `timeout` has to be called
+    fires = False  # whether characters and frames ask for interrupt programs
+
+    def __init__(self, port: "Port"):
+        self.port = port
+
+    def begin(self, now: int) -> None:
+        """STOP or RUN."""
+
+    def character(self, byte: int, wrong: bool, now: int) -> None:
+        """A character was heard."""
+
+    def sent(self, now: int) -> None:
+        """All that was to be sent has gone out."""
+
+    def timeout(self, now: int) -> None:
+        """The moment that `due` named has come."""
+
+    def look(self, now: int) -> None:
+        """A program has run."""
+
+    def serve(self, now: int) -> None:
+        """The communication phase of a scan."""
+
+    def snapshot(self) -> Any:
+        """What changes while the protocol works, as plain data."""
+
+    def restore(self, state: Any) -> None:
+        """Go back to a snapshot."""
+
+
+class Port(Unit, End):
+    """A serial port: characters go out and come in at their time, a protocol says what they mean.
+
+    `plc.ports[1].connect(instrument)` gives it a partner of its own; `Wire.join` puts it on a line with others.
+    """
+
+    in_stop = True
+
+    def __init__(
+        self,
+        number: int,
+        memory: Memory,
+        interrupts: Interrupts,
+        clock: list[int],
+        awake: list[Unit],
+        protocols: Mapping[str, Callable[["Port"], Protocol]],
+    ):
+        Unit.__init__(self, awake)
+        self.number, self.memory, self.interrupts, self.clock, self.protocols = number, memory, interrupts, clock, protocols
+        self.rank = 5 + number
+        self.name = f"port {number}"
+        self.map = memory.model.ports[number]
+        self.set_up(None)
+
+    def set_up(self, settings: PortSettings | None) -> None:
+        """Take over the settings of the system block; None leaves the port as the unit comes."""
+        self.settings = settings or PortSettings(self.map.protocols[0])
+        End.__init__(self, self.settings.framing)
+        self.heard: deque[tuple[int, int, bool]] = deque()  # (when, byte, wrong)
+        self.protocol = self.protocols.get(self.settings.protocol, Protocol)(self)
+        self.stirred()
+
+    # -- special devices ----------------------------------------------------------------------------------------
+
+    def on(self, meaning: str) -> bool:
+        """Whether a relay of the port is ON."""
+        return self.memory.lists[self.memory.model.special_bits][self.map.relays[meaning]]
+
+    def tell(self, meaning: str, on: bool) -> None:
+        """Turn a relay of the port ON or OFF."""
+        self.memory.lists[self.memory.model.special_bits][self.map.relays[meaning]] = on
+
+    def register(self, meaning: str) -> int:
+        """A register of the port without its sign, 0 where the model has none."""
+        if meaning not in self.map.registers:
+            return 0
+        return self.memory.lists[self.memory.model.special_words][self.map.registers[meaning]] & 0xFFFF
+
+    def put(self, meaning: str, value: int) -> None:
+        """Write a register of the port, if the model has it."""
+        if meaning in self.map.registers:
+            self.memory.lists[self.memory.model.special_words][self.map.registers[meaning]] = signed16(value)
+
+    def fire(self, meaning: str) -> None:
+        """Ask for the interrupt program of one of the port's events."""
+        if self.protocol.fires and meaning in self.map.events:
+            self.interrupts.fire(self.map.events[meaning])
+
+    def show(self) -> None:
+        """The settings in the registers from which the program reads, and may change, them."""
+        settings, framing = self.settings, self.framing
+        parts = (
+            (framing.stop_bits == 2, 3), (framing.parity == "odd", 4), (framing.parity != "none", 5), (framing.data_bits == 7, 6),
+            (settings.start_char is not None, 7), (settings.end_char is not None, 8),
+            (settings.gap_timeout_ms > 0, 9), (settings.frame_timeout_ms > 0, 10),
+        )  # fmt: skip
+        self.put("mode", self.memory.model.baud_codes[framing.baud] + sum(1 << place for on, place in parts if on))
+        self.put("start character", settings.start_char or 0)
+        self.put("end character", settings.end_char or 0)
+        self.put("gap timeout", settings.gap_timeout_ms)
+        self.put("frame timeout", settings.frame_timeout_ms)
+        self.put("station", settings.station)
+        self.put("timeout", settings.timeout_ms)
+        self.put("retries", settings.retries)
+
+    # -- the line -----------------------------------------------------------------------------------------------
+
+    def connect(self, instrument: Any, delay_ms: float = 0) -> End:
+        """Connect an instrument, an object with `hear(message: bytes) -> bytes | None`, which answers `delay_ms` after a message."""
+        if self.wire is None:
+            Wire(f"wire of {self.name}").join(self)
+        return self.wire.join(instrument, delay_ms=delay_ms)
+
+    def disconnect(self) -> None:
+        """Take the port off its wire."""
+        if self.wire is not None:
+            self.wire.leave(self)
+            self.stirred()
+
+    @property
+    def drives(self) -> Wire | None:
+        """The wire whose stations live by the clock of this port."""
+        return self.wire if self.wire is not None and self.wire.driver is self else None
+
+    def wire_time(self) -> int:
+        """The present moment as the wire counts it."""
+        return self.clock[0] + self.shift
+
+    def send(self, text: bytes, now: int) -> None:
+        End.send(self, text, now)
+        self.stirred()
+
+    def take(self, byte: int, wrong: bool, at: int) -> None:
+        self.heard.append((max(at, self.clock[0]), byte, wrong))  # nothing is heard before one's own time
+        self.wake()
+
+    # -- the unit -----------------------------------------------------------------------------------------------
+
+    def _moment(self) -> int | None:
+        stations = self.drives
+        moments = (
+            self.heard[0][0] if self.heard else None,
+            self.character_due,
+            self.protocol.due,
+            stations.next() if stations is not None else None,
+        )
+        return min((moment for moment in moments if moment is not None), default=None)
+
+    def stirred(self) -> None:
+        """Something has changed: the idle relay, and whether time has to ask the port."""
+        busy = self.protocol.busy
+        self.tell("idle", not busy)
+        self.wake(busy or self._moment() is not None)
+
+    def next(self, until: int) -> int | None:
+        moment = self._moment()
+        return moment if moment is not None and moment <= until else None
+
+    def act(self, now: int) -> None:
+        while self.heard and self.heard[0][0] <= now:
+            _, byte, wrong = self.heard.popleft()
+            self.protocol.character(byte, wrong, now)
+        if self.character_due == now:
+            self.put("sent character", self.character_out(now))
+            self.fire("character sent")
+            if not self.sending:
+                self.tell("sent", True)
+                self.protocol.sent(now)
+        if self.protocol.due is not None and self.protocol.due <= now:
+            self.protocol.timeout(now)
+        if self.drives is not None:
+            self.drives.act(now)
+        self.stirred()
+
+    def look(self, now: int) -> None:
+        self.protocol.look(now)
+        self.stirred()
+
+    def serve(self, now: int) -> None:
+        self.protocol.serve(now)
+        self.stirred()
+
+    def restart(self, now: int) -> None:
+        self.protocol.begin(now)
+        self.stirred()
+
+    def snapshot(self) -> tuple:
+        stations = self.drives
+        return (
+            self.sent_so_far(), list(self.heard), self.protocol.snapshot(), None if stations is None else stations.snapshot(), self.clock[0],
+        )  # fmt: skip
+
+    def restore(self, snapshot: tuple) -> None:
+        sent, heard, protocol, stations, now = snapshot
+        self.send_on(sent)
+        self.heard = deque(map(tuple, heard))
+        self.protocol.restore(protocol)
+        if self.drives is not None and stations is not None:
+            self.drives.restore(stations, now)
+        self.stirred()
+
+    def __repr__(self) -> str:
+        return f"<Port {self.number} {self.settings.protocol}>"

@@ -11,6 +11,7 @@ class Unit:
     """
 
     rank = 0
+    in_stop = False  # whether its events come in STOP too
 
     def __init__(self, awake: "list[Unit]"):
         self.awake = awake
@@ -25,6 +26,9 @@ class Unit:
 
     def look(self, now: int) -> None:
         """A program has run: see what it changed in the devices that control the unit."""
+
+    def serve(self, now: int) -> None:
+        """The communication phase of a scan, in RUN and in STOP."""
 
     def next(self, until: int) -> int | None:
         """The moment of the unit's first event up to `until`, None without one."""
