@@ -21,21 +21,32 @@ MAX_FORCED_BITS, MAX_FORCED_WORDS = 128, 16
 
 
 class Forced(list):
-    """An area with forced devices: a write to one of them changes nothing."""
+    """An area with forced devices: a write to one of them changes nothing but what `beneath` remembers of it."""
 
     def __init__(self, values):
         super().__init__(values)
         self.forced: dict[int, int] = {}
+        self.beneath: dict[int, int] = {}  # what forced devices would hold otherwise
 
     def __setitem__(self, key, value):
         if isinstance(key, slice):
             value = list(value)
             for offset, number in enumerate(range(*key.indices(len(self)))):
                 if number in self.forced:
+                    self.beneath[number] = value[offset]
                     value[offset] = self.forced[number]
         elif key in self.forced:
+            self.beneath[key] = value
             return
         super().__setitem__(key, value)
+
+    @property
+    def own(self) -> list:
+        """The values without what is forced."""
+        values = list(self)
+        for number, value in self.beneath.items():
+            values[number] = value
+        return values
 
 
 class Memory:
@@ -179,7 +190,16 @@ class Memory:
             raise Fault(RANGE)
         return moved
 
-    # -- writing from outside -------------------------------------------------------------------------------------
+    # -- reading and writing from outside -------------------------------------------------------------------------
+
+    def send(self, name: str, first: int, count: int) -> list:
+        """Read a run of a list as a communication partner sees it: forced devices as the program left them (10.4.12).
+
+        Beyond the last device there are zeros.
+        """
+        values = self.lists[name]
+        run = (values.own if isinstance(values, Forced) else values)[first : first + count]
+        return run + [0] * (count - len(run))
 
     def receive(self, name: str, first: int, values: Sequence) -> None:
         """Write a run of an area's list as a communication partner does: inputs, and what only the system writes, keep their values.
@@ -191,7 +211,7 @@ class Memory:
             return
         kept = self.model.read_only(name)
         target = self.lists[name]
-        for number, value in enumerate(values, first):
+        for number, value in enumerate(values[: max(0, len(target) - first)], first):
             if number not in kept:
                 target[number] = value
 
@@ -209,6 +229,7 @@ class Memory:
         if not isinstance(values, Forced):
             values = self.lists[name] = Forced(values)
             self.generation += 1
+        values.beneath.setdefault(device.number, values[device.number])
         values.forced.pop(device.number, None)
         values[device.number] = value = bool(value) if kind is BOOL else signed16(value)
         values.forced[device.number] = value
@@ -224,7 +245,7 @@ class Memory:
         values = self.lists[name]
         if not isinstance(values, Forced) or device.number not in values.forced:
             raise EcsimError(f"{device} is not forced")
-        del values.forced[device.number]
+        del values.forced[device.number], values.beneath[device.number]
         if not values.forced:
             self.lists[name] = list(values)
             self.generation += 1
@@ -249,6 +270,7 @@ class Memory:
         for name, values in self.lists.items():
             if name in forces:
                 self.lists[name] = Forced(values)
+                self.lists[name].beneath.update({number: values[number] for number in forces[name]})
                 self.lists[name].forced.update(forces[name])
             elif isinstance(values, Forced):
                 self.lists[name] = list(values)
@@ -274,8 +296,8 @@ class Memory:
             values[:] = [value if number in keep else off for number, value in enumerate(values)] if keep else [off] * len(values)
 
     def snapshot(self) -> dict[str, list]:
-        """A copy of every list, by name."""
-        return {name: list(values) for name, values in self.lists.items()}
+        """A copy of every list, by name; of forced devices what they would hold otherwise."""
+        return {name: values.own if isinstance(values, Forced) else list(values) for name, values in self.lists.items()}
 
     def restore(self, snapshot: dict[str, list]) -> None:
         """Put a snapshot back; what is forced stays."""

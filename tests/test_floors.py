@@ -16,7 +16,7 @@ FLOORS = (
     ("models",),  # data about devices, and nothing more
     ("memory", "hardware", "comms"),
     ("instructions",),
-    ("assembler", "project", "system"),
+    ("assembler", "project", "protection", "system"),
     ("engines",),
     ("plc",),
     ("views", "record", "history", "modbus", "verify", "scenario", "help"),
@@ -27,7 +27,7 @@ FLOORS = (
 FLOOR_OF = {module: floor for floor, modules in enumerate(FLOORS) for module in modules}
 
 # ecsim is standard library alone, but for these parts of it.
-ALLOWED = {"record": {"numpy", "matplotlib"}, "history": {"numpy"}, "modbus": {"pymodbus"}}
+ALLOWED = {"record": {"numpy", "matplotlib"}, "history": {"numpy"}, "modbus": {"pymodbus"}, "project": {"tomlkit"}}
 WALL_CLOCK = "time"  # only session reads it
 
 # folder -> import name; neither may know the other's insides

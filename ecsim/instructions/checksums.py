@@ -2,22 +2,13 @@
 
 from binascii import crc_hqx
 
+from ..comms import checksums
 from .define import value
 
 
 def low_bytes(words):
     """The data: the high byte of a word counts for nothing."""
     return bytes(word & 255 for word in words)
-
-
-def reflected(byte, polynomial):
-    """A byte worked into an empty CRC register, its lowest bit first."""
-    for _ in range(8):
-        byte = byte >> 1 ^ (polynomial if byte & 1 else 0)
-    return byte
-
-
-CRC16_TABLE = tuple(reflected(byte, 0xA001) for byte in range(256))  # x^16 + x^15 + x^2 + 1, mirrored
 
 
 @value("CCITT", "S1:WORD[D V]*S2 S2:INT=0..32767 D:WORD[D V] -> D", steps=7, section="6.13.1")
@@ -32,12 +23,10 @@ def crc16(s1, s2, d):
 
     Begun with 16#FFFF it is the CRC of Modbus, whose low byte is sent first.
     """
-    for byte in low_bytes(s1):
-        d = d >> 8 ^ CRC16_TABLE[(d ^ byte) & 255]
-    return d
+    return checksums.crc16(low_bytes(s1), d)
 
 
 @value("LRC", "S1:WORD[D V]*S2 S2:INT=0..32767 D:WORD[D V] -> D", steps=7, section="6.13.3")
 def lrc(s1, s2, d):
     """D becomes the LRC of S2 bytes from S1 on: what is missing from their sum to a multiple of 256, begun with D."""
-    return d - sum(low_bytes(s1)) & 255
+    return checksums.lrc(low_bytes(s1), d)
