@@ -17,6 +17,7 @@ from .devices import Bits, Device
 from .engines import CompiledEngine, SteppingEngine, Trace
 from .engines.access import functions
 from .errors import WATCHDOG, EcsimError
+from .hardware.analog import BaseAnalog
 from .hardware.clocks import Clocks
 from .hardware.counters import Counters
 from .hardware.eeprom import Eeprom
@@ -73,7 +74,8 @@ class MachineError:
 class Plc:
     """A PLC that is powered and in STOP. `scan_ms` is the fixed scan period, None models it from the program's length.
 
-    `input_filter_ms` overrides the model's filter (10 ms EC20, 8 ms EC10); `system` is the whole system block.
+    `input_filter_ms` overrides the model's filter (10 ms EC20, 8 ms EC10); `system` is the whole system block. `io` names the
+    base unit and its modules, (24, 16) or [(24, 16), (8, 8), "4AD"]; without it every X and Y has a terminal.
     """
 
     def __init__(
@@ -82,6 +84,7 @@ class Plc:
         scan_ms: float | None = 10,
         input_filter_ms: float | None = None,
         system: SystemBlock | None = None,
+        io: tuple | list | None = None,
     ):
         self.model = get_model(model)
         self.scan_ms = scan_ms
@@ -107,11 +110,14 @@ class Plc:
         self.rtc = RealTimeClock(self.memory, self._awake)
         self.eeprom = Eeprom(self.memory, self._awake)
         self.pots = Potentiometers(self.model.limits.get("potentiometers", 0), self._awake)
-        self.modules = Rack(self.memory, self._awake)
+        self.modules = Rack(self.memory, self._awake, self.clock)
+        if io is not None:
+            self.modules.configure(io)
+        self.analog = BaseAnalog(self.memory, self.clock, lambda: self.modules.analog_points, self._awake)
         self.units: dict[str, Unit] = {
             "counters": self.counters, "meters": self.meters, "inputs": self.inputs, "interrupts": self.interrupts,
             "outputs": self.outputs, "servo": self.servo, "limits": self.limits,
-            "rtc": self.rtc, "eeprom": self.eeprom, "pots": self.pots, "modules": self.modules,
+            "rtc": self.rtc, "eeprom": self.eeprom, "pots": self.pots, "modules": self.modules, "analog": self.analog,
         }  # fmt: skip
         self.ports = [
             Port(number, self.memory, self.interrupts, self.clock, self._awake, PROTOCOLS) for number in range(len(self.model.ports))
@@ -279,6 +285,7 @@ class Plc:
         self._tell("first scan", True)
         self._special[1][self.model.registers["least scan time"]] = 0
         self.memory.slots(self.program.slots)
+        self.modules.set_up(self.system.modules)
         self.clocks.restart(self.clock[0])
         self.timers.restart()
         self._restart_units()
@@ -613,6 +620,8 @@ class Plc:
         device, kind = self.memory.parse(name, self._names)
         if self._read_only(device, kind):
             raise EcsimError(f"{name} cannot be written: the system writes it")
+        if device.area == "X":
+            self.modules.check("X", range(device.number, device.number + (4 * device.digits if isinstance(device, Bits) else 1)))
         return device, kind, self.memory.fitting(device, kind, value)
 
     get = __getitem__
@@ -681,6 +690,7 @@ class Plc:
         device, _ = self.memory.parse(name, self._names)
         if not isinstance(device, Device) or device.area != "X":
             raise EcsimError(f"{name} is no input; signals go to X devices")
+        self.modules.check("X", range(device.number, device.number + 1))
         return device.number
 
     @alone

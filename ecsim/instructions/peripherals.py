@@ -1,13 +1,13 @@
 """6.8: peripherals: special modules, potentiometers, the input filter, immediate refresh, the EEPROM."""
 
-from ..errors import NO_BUFFER, NO_MODULE, OPERAND, RANGE, Fault
+from ..errors import NO_ANSWER, NO_BUFFER, NO_MODULE, OPERAND, RANGE, REFRESH, Fault
 from ..hardware.eeprom import WRITE_US
 from ..values import join, split
 from .define import command
 
 SAVED_END = 7000  # 6.8.8: S1 + S2 < D7000
 _PLACE = "S1:INT[const]=0..7 S2:INT[const]=0..32767"
-_MODULE = {"models": ("EC20",), "faults": (NO_MODULE, NO_BUFFER)}
+_MODULE = {"models": ("EC20",), "faults": (NO_MODULE, NO_ANSWER, NO_BUFFER)}
 
 
 @command("FROM", f"{_PLACE} >D:INT[D V]*S3 S3:INT[const]=1..32767", steps=9, section="6.8.1", **_MODULE)
@@ -56,7 +56,7 @@ def _groups_of_eight(device, count) -> str | None:
     return f"S = {count} is no multiple of 8" if count % 8 else None
 
 
-@command("REF", ">D:POINT[X Y]*S S:INT[const]=8..256", steps=5, section="6.8.7", faults=(RANGE,), check=_groups_of_eight)
+@command("REF", ">D:POINT[X Y]*S S:INT[const]=8..256", steps=5, section="6.8.7", faults=(RANGE, REFRESH), check=_groups_of_eight)
 def ref(machine, device, count):
     """Take the S inputs from D on into the program, or put the S outputs out, at once and not at the end of the scan.
 
@@ -64,6 +64,7 @@ def ref(machine, device, count):
     """
     if device.number + count > machine.model.areas[device.area].count:
         raise Fault(RANGE)
+    machine.modules.refresh(device.area, range(device.number, device.number + count))
     if device.area == "X":
         machine.inputs.refresh(machine.clock[0], range(device.number, device.number + count))
 

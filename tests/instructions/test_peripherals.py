@@ -64,7 +64,7 @@ def test_a_snapshot_holds_the_buffers():
 def test_the_rack_has_eight_places_for_modules():
     plc = ecsim.Plc("EC20")
     assert len(plc.modules) == 0
-    for place, module in ((8, Module(1)), (0, "4AD")):
+    for place, module in ((8, Module(1)), (0, "4XY"), (0, 7)):
         with pytest.raises(ecsim.EcsimError):
             plc.modules[place] = module
     with pytest.raises(ecsim.EcsimError, match="the rack is empty"):
