@@ -2,16 +2,14 @@
 
 import copy
 import threading
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from collections.abc import Iterable
+from dataclasses import replace
 from datetime import datetime
-from functools import wraps
 from numbers import Integral
 from pathlib import Path
 from typing import Any
 
 from .assembler import Program, assemble
-from .assembler.inputs import occupied
 from .comms.protocols import PROTOCOLS
 from .devices import Bits, Device
 from .engines import CompiledEngine, SteppingEngine, Trace
@@ -21,9 +19,9 @@ from .hardware.analog import BaseAnalog
 from .hardware.clocks import Clocks
 from .hardware.counters import Counters
 from .hardware.eeprom import Eeprom
-from .hardware.faults import MEANINGS, STOPPING, Faults
+from .hardware.faults import Faults, SystemErrors
 from .hardware.inputs import Inputs
-from .hardware.interrupts import POWER_LOSS, Interrupts
+from .hardware.interrupts import Interrupts
 from .hardware.limits import FrequencyLimits
 from .hardware.meters import Meters
 from .hardware.modules import Rack
@@ -33,45 +31,26 @@ from .hardware.rtc import RealTimeClock
 from .hardware.serial import Port
 from .hardware.servo import ServoReader
 from .hardware.signals import PARTS, Signal, Train, bouncing, changes, quadrature
+from .hardware.supply import Supply
 from .hardware.timers import Timers
 from .hardware.unit import Unit
 from .memory import Memory
 from .models import Model, get_model
 from .project import own_lines, read_project
+from .states import States, alone
 from .system import SystemBlock, within
 from .values import BOOL, DataType
 
+# What changes while a Plc runs and is neither memory nor unit.
+STATE = ("scans", "running", "_switch", "_halted", "_run_level", "_first", "_asked", "_spent_ns", "_noted_us")
 LONGEST_NS = 5_000_000_000  # a program that takes longer is stopped (61) even where WDT or a watchdog of 0 would let it run
-
-
-def alone(method: Callable) -> Callable:
-    """Let a method of Plc wait until no other thread is in the middle of a scan or a change."""
-
-    @wraps(method)
-    def waiting(self, *arguments, **named):
-        with self.lock:
-            return method(self, *arguments, **named)
-
-    return waiting
 
 
 class Overrun(Exception):
     """The user program took longer than the watchdog allows."""
 
 
-@dataclass(frozen=True)
-class MachineError:
-    """One error that the machine reports, in words."""
-
-    code: int
-    meaning: str
-    section: str = "appendix 6"
-
-    def __str__(self) -> str:
-        return f"{self.code}: {self.meaning} (manual {self.section})"
-
-
-class Plc:
+class Plc(States):
     """A PLC that is powered and in STOP. `scan_ms` is the fixed scan period, None models it from the program's length.
 
     `input_filter_ms` overrides the model's filter (10 ms EC20, 8 ms EC10); `system` is the whole system block. `io` names the
@@ -96,6 +75,8 @@ class Plc:
         self.faults = Faults(self.memory)
         self.clock = [0]
         self._awake: list[Unit] = []  # the units that time has to ask
+        self.health = SystemErrors(self.memory, self._awake)
+        self.supply = Supply(self.memory, self._awake)
         watchers: list[Unit] = []
         self.inputs = Inputs(self.memory, input_filter_ms, self._awake, watchers)
         self.interrupts = Interrupts(self.memory, self.faults, self._awake)
@@ -118,6 +99,7 @@ class Plc:
             "counters": self.counters, "meters": self.meters, "inputs": self.inputs, "interrupts": self.interrupts,
             "outputs": self.outputs, "servo": self.servo, "limits": self.limits,
             "rtc": self.rtc, "eeprom": self.eeprom, "pots": self.pots, "modules": self.modules, "analog": self.analog,
+            "health": self.health, "supply": self.supply,
         }  # fmt: skip
         self.ports = [
             Port(number, self.memory, self.interrupts, self.clock, self._awake, PROTOCOLS) for number in range(len(self.model.ports))
@@ -127,13 +109,15 @@ class Plc:
         self.clocks = Clocks(self.memory)
         self.running = False
         self.scans = 0
-        self.system_error = 0
+        self._switch = "ON"
+        self._halted = 0  # the serious execution error that has stopped the PLC
+        self._run_level = False  # of the run input, when it was looked at last
         self.program: Program | None = None
         self._engines: dict[type, CompiledEngine | SteppingEngine] = {}
         self._tracing = self._stepping = False
         self._asked = 0
         self._spent_ns = self._program_ns = 0  # what this scan's program has taken; what it takes without loops
-        self._watchdog_ns = self._limit_ns = self.system.watchdog_ms * 1_000_000
+        self._limit_ns = 0  # what it may take
         self._noted_us = 0
         self._first = True
         self._names: dict[str, Device] = {}
@@ -167,6 +151,10 @@ class Plc:
     def _settle(self, scan_ms: float | None, system: SystemBlock) -> None:
         """Take over the period of a scan and the system block."""
         self.scan_ms, self.system = scan_ms, system
+        self._watchdog_ns = system.watchdog_ms * 1_000_000
+        self.supply.loss_ms, self.supply.no_battery = system.power_loss_ms, system.no_battery
+        self.health.happen("system block")
+        self.health.happen("data block")
         self._fixed_us = 0 if scan_ms is None else max(round(scan_ms * 1000), system.constant_scan_ms * 1000)
         if system.input_filter_ms is not None:
             self.inputs.usual_us = round(system.input_filter_ms * 1000)
@@ -183,6 +171,7 @@ class Plc:
         A program that does not compile raises ProgramError and leaves the loaded one as it is, running if it ran. What the
         plc.toml of a project folder sets holds from then on.
         """
+        self._need_power()
         if not isinstance(program, Program):
             text, name, chosen = read_project(program)
             if chosen.get("model", self.model.name) != self.model.name:
@@ -213,6 +202,7 @@ class Plc:
         if self.running:
             self.stop()
         self.program = program
+        self.health.happen("program")
         self._program_ns = program.steps * self.model.instruction_ns
         self._engines = {CompiledEngine: compiled}
         self._names = {name.casefold(): variable.device for name, variable in program.variables.items()}
@@ -267,111 +257,8 @@ class Plc:
         """After a change of what is forced: the code holds the memory's lists."""
         if self._engine.generation != self.memory.generation:
             self._engine.bind()
-        self._run_program = self._engine.scan
+        self._run_program = self._meet if self.health.met else self._engine.scan
         self._special = self.memory.lists[self.model.special_bits], self.memory.lists[self.model.special_words]
-
-    # -- RUN, STOP, power ---------------------------------------------------------------------------------------
-
-    @alone
-    def run(self) -> None:
-        """STOP -> RUN with the clearing of 2.1.6: retained devices stay, the data block is loaded, all else is cleared unless values are held."""
-        if self.running:
-            return
-        if self.system_error in STOPPING and self.system_error >= 60:
-            self.system_error = 0
-        self._initialise(hold=self.system.hold_values)
-        self._init_special(power_up="power up" in self.model.relays and bool(self._special[0][self.model.relays["power up"]]))
-        self._tell("running", True)
-        self._tell("first scan", True)
-        self._special[1][self.model.registers["least scan time"]] = 0
-        self.memory.slots(self.program.slots)
-        self.modules.set_up(self.system.modules)
-        self.clocks.restart(self.clock[0])
-        self.timers.restart()
-        self._restart_units()
-        self.inputs.assign(*occupied(self.program.units, self.model))
-        self.interrupts.assign({unit.event: unit.name for unit in self.program.units if unit.event is not None})
-        self.running = self._first = True
-
-    @alone
-    def stop(self) -> None:
-        """RUN -> STOP: values are kept, outputs do what the system block says."""
-        if not self.running:
-            return
-        self.running = False
-        self._tell("running", False)
-        self._restart_units()
-        if self.system.stop_outputs == "freeze":
-            return
-        self.memory.clear("Y")
-        if self.system.stop_outputs == "configure":
-            for name, state in self.system.stop_output_table.items():
-                device, kind = self.memory.parse(name)
-                self.memory.set(device, kind, state)
-
-    @alone
-    def power_cycle(self) -> None:
-        """Power off and on again with the mode switch ON: what is not retained is cleared, then RUN. What is forced stays so (2.4.6)."""
-        if self.running:
-            self.interrupts.fire(POWER_LOSS)  # 9.7: its program still runs
-            self._serve_queue()
-        self.stop()
-        self._initialise(hold=False)
-        self.inputs.waiting.clear()
-        self.system_error = 0
-        self._init_special(power_up=True)
-        self.run()
-
-    def _initialise(self, hold: bool) -> None:
-        """The order of 2.1.6: retained, data block, held values, cleared."""
-        retained = {
-            area: {n for first, last in ranges for n in range(first, last + 1)}
-            for area, ranges in self.system.retain.items()
-            if area in self.model.retained
-        }
-        if not hold:
-            for area in self.model.areas:
-                if area != "X":
-                    self.memory.clear(area, retained.get(area, frozenset()).union(self.model.special(area)))
-        for part in ("DUE", "REST"):
-            values = self.memory.lists[part]
-            values[:] = [0] * len(values)
-        if self.system.data_block_valid:
-            for name, value in self.system.data_block.items():
-                device, kind = self.memory.parse(name)
-                if device.number not in retained.get(device.area, ()):
-                    self.memory.set(device, kind, value)
-        self.eeprom.recall(keep=retained.get("D", frozenset()))
-
-    def _init_special(self, power_up: bool) -> None:
-        """SM and SD at their initial values but for the pulse counts SD50 to SD55 (appendix 2); the input filter as the system block has it."""
-        self.inputs.set_filter(self.inputs.usual_us)
-        model = self.model
-        registers = self.memory.lists[model.special_words]
-        pulses = registers[50:56]
-        for area in (model.special_bits, model.special_words):
-            self.memory.clear(area, range(model.first_special))
-        registers[50:56] = pulses
-        numbers = model.registers
-        values = {
-            "type": model.type_code, "version": 100, "capacity": model.limits["steps"] // 1000, "system error": self.system_error,
-            "watchdog": self.system.watchdog_ms, "constant scan": self.system.constant_scan_ms, "input filter": self.inputs.filter_us // 1000,
-        }  # fmt: skip
-        for meaning, value in values.items():
-            if meaning in numbers:
-                registers[numbers[meaning]] = value
-        for number, value in model.initial_registers.items():
-            registers[number] = value
-        for port in self.ports:
-            port.show()
-        self._tell("power up", power_up)
-        self._tell("constant scan", self.system.constant_scan_ms > 0)
-        self._tell("system error", self.system_error != 0)
-
-    def _tell(self, meaning: str, on: bool) -> None:
-        """Turn a special relay ON or OFF by its meaning, if the model has one for it."""
-        if meaning in self.model.relays:
-            self.memory.lists[self.model.special_bits][self.model.relays[meaning]] = on
 
     # -- time ---------------------------------------------------------------------------------------------------
 
@@ -422,6 +309,8 @@ class Plc:
     def begin_scan(self) -> int:
         """The scan up to its communication, in which no time passes; gives the moment in which it will end."""
         now = self.clock[0]
+        if not self.running and not self._rest(now):
+            return now + self.period_us
         if self.interrupts.queue:
             self._serve_queue()
         if self.inputs.changed:
@@ -563,13 +452,6 @@ class Plc:
         if self._watchdog_ns:
             self._limit_ns = min(self._spent_ns + self._watchdog_ns, LONGEST_NS)
 
-    def _stop_with(self, code: int) -> None:
-        """A serious execution error: STOP and the ERR lamp; SM20 and SD20 tell of it, SM3 and SD3 belong to system errors (2.4.2)."""
-        self._services["FRAMES"].clear()
-        self.faults.note(code)
-        self.system_error = code
-        self.stop()
-
     def _our_bug(self, error: Exception) -> Exception:
         line, frames = 0, error.__traceback__
         while frames is not None:
@@ -618,6 +500,8 @@ class Plc:
     def _check_write(self, name: str, value: Any) -> tuple[Device | Bits, DataType, int | float]:
         """What a write from outside means; raises EcsimError when it cannot be done."""
         device, kind = self.memory.parse(name, self._names)
+        if device.area != "X":
+            self._need_power()
         if self._read_only(device, kind):
             raise EcsimError(f"{name} cannot be written: the system writes it")
         if device.area == "X":
@@ -713,12 +597,14 @@ class Plc:
     @alone
     def force(self, name: str, value: int) -> None:
         """Hold a bit or register at a value, whatever program and wiring say, until `unforce`."""
+        self._need_power()
         device, kind = self.memory.parse(name, self._names)
         if isinstance(device, Bits) or (kind is not BOOL and kind.words != 1):
             raise EcsimError(f"{name}: one bit or one 16-bit register can be forced")
         if self._read_only(device, kind):
             raise EcsimError(f"{device} cannot be forced: the system writes it")
         self.memory.force(device, kind, self.memory.fitting(device, kind, value))
+        self.health.happen("force")
         self._rebind()
 
     @alone
@@ -739,13 +625,6 @@ class Plc:
         """Canonical device -> the name that the program gives it."""
         return self.program.names()
 
-    @property
-    def errors(self) -> list[MachineError]:
-        """What SD3 and SD20 to SD24 say, in words, the system error first."""
-        codes = [self.system_error] if self.system_error else []
-        codes += [code for code in self.faults.codes() if code not in codes]
-        return [MachineError(code, MEANINGS.get(code, "unknown")) for code in codes]
-
     # -- state --------------------------------------------------------------------------------------------------
 
     @alone
@@ -756,7 +635,8 @@ class Plc:
             "units": {name: unit.snapshot() for name, unit in self.units.items()},
             "clocks": (self.clocks.began, self.clocks.due, self.clocks.slow_due),
             "watched": dict(self.timers.watched),
-            "plc": (self.clock[0], self.scans, self.running, self._first, self.system_error, self._asked, self._spent_ns, self._noted_us),
+            "plc": {name: getattr(self, name) for name in STATE},
+            "clock": self.clock[0],
             "forced": self.memory.forces(),
             "program": self.program,
             "trace": copy.copy(self.trace),
@@ -768,15 +648,15 @@ class Plc:
         if snapshot["program"] is not self.program:
             raise EcsimError("the snapshot was taken with another program; load that one first")
         self.memory.hold(snapshot["forced"])
-        self._rebind()
         self.memory.restore(snapshot["memory"])
         for name, state in snapshot["units"].items():
             self.units[name].restore(state)
         self.clocks.began, self.clocks.due, self.clocks.slow_due = snapshot["clocks"]
         self.timers.watched = dict(snapshot["watched"])
-        self.clock[0], self.scans, self.running, self._first, self.system_error, self._asked, self._spent_ns, self._noted_us = snapshot[
-            "plc"
-        ]
+        self.clock[0] = snapshot["clock"]
+        for name, value in snapshot["plc"].items():
+            setattr(self, name, value)
+        self._rebind()
         trace = snapshot["trace"]
         if trace is not None and SteppingEngine in self._engines:
             self._engines[SteppingEngine].trace = trace

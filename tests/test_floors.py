@@ -17,7 +17,7 @@ FLOORS = (
     ("memory", "hardware", "comms"),
     ("instructions",),
     ("assembler", "project", "protection", "system"),
-    ("engines",),
+    ("engines", "states"),
     ("plc",),
     ("views", "record", "history", "modbus", "verify", "scenario", "help"),
     ("session",),

@@ -60,6 +60,10 @@ class RealTimeClock(Unit):
             raise EcsimError(f"the clock goes from {YEARS.start} to {YEARS.stop - 1}, {moment.year} is outside")
         self._set(moment, moment.isoweekday() % 7, now)
 
+    def lose(self, now: int) -> None:
+        """The clock had no supply: it begins anew."""
+        self._set(START, START.isoweekday() % 7, now)
+
     def refresh(self, now: int) -> None:
         """Show date and time in the clock's registers; `due` is when they change next."""
         if self.first is not None:

@@ -26,6 +26,11 @@ def _others(writable: frozenset[int]) -> frozenset[int]:
     return frozenset(range(256)) - writable
 
 
+def _without(devices: dict[str, int], *meanings: str) -> dict[str, int]:
+    """Special devices by meaning but for those that a model does not have."""
+    return {meaning: number for meaning, number in devices.items() if meaning not in meanings}
+
+
 # Appendices 1 and 2: what programs and tools may write.
 _RELAYS = _numbers((40, 47), (65, 68), 80, 81, (90, 97), (110, 113), (120, 123), 135, 136, (180, 182), 185, (200, 255))
 _RELAYS_EC10 = _RELAYS | _numbers((48, 56), 63, 64, 85, (172, 175), 178, 186)
@@ -47,12 +52,14 @@ EC20 = Model(
         "clock 10 ms": 10, "clock 100 ms": 11, "clock 1 s": 12, "clock 1 min": 13, "clock 1 h": 14, "scan toggle": 15,
         "fault": 20, "fault range": 21, "fault operand": 22, "zero": 180, "carry": 181, "borrow": 182, "bytewise": 186,
         "counter direction": 0,  # SM(n) for C(n): appendix 1, section 17
+        "battery low": 4, "power lost": 5, "24 V lost": 6, "no battery": 7, "run input": 9, "clock error": 193,
         **ec_fast.RELAYS, **ec_serial.RELAYS, **ec_modules.RELAYS,
     },
     registers={
         "type": 0, "version": 1, "capacity": 2, "system error": 3, "faults": 20,
         "scan time": 30, "least scan time": 31, "greatest scan time": 32, "constant scan": 33, "watchdog": 34, "input filter": 35,
-        "faulty module": 25, "clock": 100, **ec_fast.REGISTERS, **ec_serial.REGISTERS, **ec_modules.REGISTERS,
+        "battery": 4, "power loss delay": 5, "run input": 9, "faulty module": 25, "clock": 100,
+        **ec_fast.REGISTERS, **ec_serial.REGISTERS, **ec_modules.REGISTERS,
     },
     read_only_relays=_others(_RELAYS),
     read_only_registers=_others(_REGISTERS),
@@ -85,7 +92,7 @@ EC10 = replace(
     EC20,
     name="EC10",
     areas=_areas(x=0o200, y=0o200, m=2048, s=1024),
-    limits=EC20.limits | {"global variables": 140, "power loss ms": 0, "modules set up": 4} | ec_modules.LIMITS_EC10,
+    limits=EC20.limits | {"global variables": 140, "power loss ms": 0, "modules set up": 4, "clock hours": 100} | ec_modules.LIMITS_EC10,
     battery=False,
     filter_inputs=0o10,
     filter_ms=8,
@@ -98,8 +105,8 @@ EC10 = replace(
     type_code=10,
     step_surcharge=("M", 1536),  # 5.1.1: a contact on M1536 to M2047 is one step longer
     retention_limits={"ranges": 1, "bits": 320, "words": 180},
-    relays=EC20.relays | {"eeprom idle": 196} | ec_fast.RELAYS_EC10,
-    registers=EC20.registers | ec_fast.REGISTERS_EC10 | ec_modules.REGISTERS_EC10,
+    relays=_without(EC20.relays, "battery low", "no battery") | {"eeprom idle": 196} | ec_fast.RELAYS_EC10,
+    registers=_without(EC20.registers, "battery", "power loss delay") | ec_fast.REGISTERS_EC10 | ec_modules.REGISTERS_EC10,
     initial_registers=EC20.initial_registers | ec_modules.INITIAL_EC10,
     base_units=ec_modules.BASE_UNITS_EC10,
     analog_base=ec_modules.ANALOG_BASE_EC10,
