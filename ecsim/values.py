@@ -2,7 +2,10 @@
 
 import math
 import struct
+import sys
+from array import array
 from dataclasses import dataclass
+from functools import cache
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +85,16 @@ def single(value: float) -> float:
 def real_from_words(high: int, low: int) -> float:
     """Two registers as an IEEE single."""
     return _FLOAT.unpack(_PAIR.pack(high, low))[0]
+
+
+@cache
+def singles() -> list[tuple[int, int, float]]:
+    """High word, low word and value of each 16-bit integer as a REAL; the negative ones at their negative index."""
+    numbers = array("f", (*range(0x8000), *range(-0x8000, 0)))
+    words = memoryview(numbers).cast("B").cast("h").tolist()
+    first, second = words[::2], words[1::2]
+    high, low = (second, first) if sys.byteorder == "little" else (first, second)
+    return list(zip(high, low, numbers, strict=True))
 
 
 def words_from_real(value: float) -> tuple[int, int]:

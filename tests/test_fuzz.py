@@ -29,7 +29,7 @@ MODELS = ("EC10", "EC20")
 
 OWN_WORDS = set(
     """a_ c f f_ g p v w op_ unit_ part_ unit__parts turn_ place_ flow first turns left place error word wide number
-    STACK KEPT LOOPS HALF REAL real_of halves range int float Fault""".split()
+    STACK KEPT LOOPS HALF REAL SINGLES real_of halves range int float Fault""".split()
 )
 OWN_ATTRIBUTES = {"append", "pop", "code", "scans"}
 OWN_STRINGS = {"T", "C"}

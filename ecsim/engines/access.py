@@ -13,6 +13,7 @@ from ..values import BOOL, REAL, WORD, DataType, join, real_from_words, signed16
 # REAL[0] and HALF[0], HALF[1] are one piece of scratch memory, seen as a single and as two registers: the fastest way between the two.
 ROUNDED = "REAL[0]"
 FEW = ("2", "3", "4")  # spans of so many pairs are written one by one
+BEYOND = 0x7F80  # high words of singles from here on are an infinity or no number
 _HIGH, _LOW = ("HALF[1]", "HALF[0]") if sys.byteorder == "little" else ("HALF[0]", "HALF[1]")
 
 
@@ -95,6 +96,33 @@ class Access:
             return f"({high} << 16 | {low} & 65535)"
         return f"(({high} & 65535) << 16 | {low} & 65535)"
 
+    def compare(self, kind: DataType, first: Operand, relation: str, second: Operand) -> str | None:
+        """An expression that compares two 32-bit operands register by register, None for operands that are no pairs."""
+        pairs = self._halves(kind, first), self._halves(kind, second)
+        if None in pairs or all(isinstance(operand, Constant) for operand in (first, second)):
+            return None
+        (high, low), (other_high, other_low) = pairs
+        if relation == "==":
+            text = f"({high} == {other_high} and {low} == {other_low})"
+        elif relation == "!=":
+            text = f"({high} != {other_high} or {low} != {other_low})"
+        else:  # the high words decide if they differ
+            text = f"({high} - {other_high} or ({low} & 65535) - ({other_low} & 65535)) {relation} 0"
+        if kind is not REAL:
+            return text
+        # Positive singles have the order of their registers; all others are compared as the numbers that they are.
+        numbers = f"{self.load(kind, first)} {relation} {self.load(kind, second)}"
+        return f"({text} if 0 <= {high} < {BEYOND} > {other_high} >= 0 else {numbers})"
+
+    def _halves(self, kind: DataType, operand: Operand) -> tuple[str, str] | None:
+        """The source of a 32-bit operand's high and low word, if it has them as registers hold them."""
+        if isinstance(operand, Constant):
+            high, low = words_from_real(float(operand.value)) if kind is REAL else split(operand.value)
+            return str(high), str(low)
+        if not isinstance(operand, Device) or operand.index is not None or operand.area in ("T", "C"):
+            return None
+        return self._pair(f"{operand.area}[{operand.number}]", f"{operand.area}[{operand.number + 1}]")
+
     def _load_bits(self, kind: DataType, bits: Bits) -> str:
         width = 4 * bits.digits
         if bits.index is not None:
@@ -158,6 +186,11 @@ class Access:
             lines.append(f"C[{number}] = 0")
         return lines
 
+    def whole(self, operand: Device, name: str, text: str) -> list[str]:
+        """The statement that gives a pair of registers, and `name`, the 16-bit integer `text` as a REAL."""
+        high, low = self._pair(f"{operand.area}[{operand.number}]", f"{operand.area}[{operand.number + 1}]")
+        return [f"{high}, {low}, {name} = SINGLES[{text}]"]
+
     @staticmethod
     def copy(source: Device, target: Device) -> list[str]:
         """The statement that moves a pair of registers as it stands."""
@@ -216,7 +249,7 @@ def functions(memory: Memory) -> dict[str, object]:
     model, lists = memory.model, memory.lists
     first = 0 if model.high_word_first else 1
     order = ">" if model.high_word_first else "<"  # of words, and so of bytes: each register is packed and unpacked the same way
-    half = array("h", (0, 0))
+    half = memoryview(array("h", (0, 0)))
 
     def at(values, number, low, high):
         if low <= number < high:
@@ -334,7 +367,7 @@ def functions(memory: Memory) -> dict[str, object]:
     return local | {
         "Fault": Fault,
         "HALF": half,
-        "REAL": memoryview(half).cast("B").cast("f"),
+        "REAL": half.cast("B").cast("f"),
         "halves": Struct(">hh").pack,
         "real_of": Struct(">f").unpack,
         "split": split,

@@ -194,7 +194,7 @@ class _Rung:
     def _value(self, instruction: Instruction, following: list[Instruction]) -> None:
         flow = self._used()
         if self.last != (flow, len(self.lines)) or instruction.pulse >= 0:
-            self.c.known.forget()
+            self.c.known.begin()
         self._when(self.c.value(instruction, telling=not self.c.overridden(instruction, following)))
         if instruction.pulse >= 0:
             self.c.known.forget()

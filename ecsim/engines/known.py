@@ -14,6 +14,7 @@ class Known:
         self.on = on
         self.names: dict[tuple[DataType, str, int], str] = {}
         self.scratch: tuple[str, int] | None = None
+        self.settled = False  # no execution error is left to be cleared
         self.made = 0
 
     @staticmethod
@@ -25,9 +26,15 @@ class Known:
         """The statements that follow may be executed without those before."""
         self.names.clear()
         self.scratch = None
+        self.settled = False
+
+    def begin(self) -> None:
+        """Other statements follow than those before: nothing is known, and the names are free again."""
+        self.forget()
+        self.made = 0
 
     def new(self) -> str:
-        """A name that nothing else has."""
+        """A name that nothing else has in these statements."""
         self.made += 1
         return f"w{self.made}"
 

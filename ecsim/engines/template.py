@@ -25,6 +25,7 @@ class Template:
     uses: dict[str, int] = field(default_factory=dict)  # field -> how often it stands there
     globals: dict[str, object] = field(default_factory=dict)
     returns: bool = False
+    relation: str | None = None  # what stands between two parameters that are compared
 
     def fill(self, fields: dict[str, str]) -> str:
         """The text with every field replaced."""
@@ -32,6 +33,7 @@ class Template:
 
 
 _FIELD = re.compile(r"__(\w+?)__")
+_RELATION = re.compile(r"__\w+?__ ([=!<>]+) __\w+?__")
 
 
 class _Fields(ast.NodeTransformer):
@@ -79,7 +81,8 @@ def template(function: Callable, form: str) -> Template:
         expression = body[0].value
         passes = isinstance(expression, ast.Name)
         text = ast.unparse(ast.fix_missing_locations(fields.visit(expression)))
-        return Template(text, True, passes, _count(text), fields.globals)
+        relation = _RELATION.fullmatch(text)
+        return Template(text, True, passes, _count(text), fields.globals, relation=relation and relation[1])
     if form != "always":
         return Template(None, False)
     returns = isinstance(body[-1], ast.Return)

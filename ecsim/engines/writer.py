@@ -15,8 +15,9 @@ from contextlib import contextmanager
 from ..assembler.program import Instruction, Network, Program, Region, Unit, Variable
 from ..devices import Bits, Constant, Device, Operand
 from ..errors import OPERAND
+from ..instructions.define import Definition
 from ..instructions.signature import OperandSpec
-from ..values import BOOL, DINT, REAL, REAL_LIMIT, DataType, join, words_from_real
+from ..values import BOOL, DINT, INT, REAL, REAL_LIMIT, DataType, join, singles, words_from_real
 from .access import ROUNDED, Access
 from .known import Known
 from .template import Template, template
@@ -77,8 +78,9 @@ class Writer:
         `after` is done behind an execution error besides.
         """
         application = instruction.definition.application
-        if self.can_fault and application:
+        if self.can_fault and application and not self.known.settled:
             lines = [*lines, f"if {self.fault_flag}: executed()"]
+            self.known.settled = self.known.on
         if self._may_fault(instruction):
             lines = ["try:", *indented(lines), "except Fault as error:", *indented(["fault(error.code)", *after])]
         return lines
@@ -209,9 +211,11 @@ class Writer:
     def contact(self, instruction: Instruction) -> tuple[list[str], str]:
         """Statements to run first, and the expression that is true while the contact is closed."""
         pattern = template(instruction.definition.function, "contact")
-        lines, fields = self._loads(instruction, pattern, "")
-        self.globals.update(pattern.globals)
-        text = pattern.fill(fields)
+        lines, text = [], self._relation(instruction, pattern)
+        if text is None:
+            lines, fields = self._loads(instruction, pattern, "")
+            self.globals.update(pattern.globals)
+            text = pattern.fill(fields)
         if not (self.can_fault and instruction.definition.application):
             return lines, text
         name = f"c{instruction.position}"
@@ -219,6 +223,13 @@ class Writer:
         if self._may_fault(instruction):
             body = ["try:", *indented(body), "except Fault as error:", f"{INDENT}{name} = fault(error.code)"]
         return body, name
+
+    def _relation(self, instruction: Instruction, pattern: Template) -> str | None:
+        """The expression for a comparison of two 32-bit operands, where there is one that does without their values."""
+        if pattern.relation is None or instruction.definition.operands[0].type.words < 2:
+            return None
+        first, second = instruction.operands
+        return self.access.compare(instruction.definition.operands[0].type, first, pattern.relation, second)
 
     # -- values -------------------------------------------------------------------------------------------------
 
@@ -295,10 +306,28 @@ class Writer:
         return lines
 
     def _one_result(self, instruction: Instruction, spec: OperandSpec, operand, result: str, pattern: Template) -> list[str]:
-        if instruction.definition.as_stored and not instruction.definition.flags and not self._is_pair(spec, operand):
+        definition = instruction.definition
+        if definition.as_stored and not definition.flags and not self._is_pair(spec, operand):
+            return self._store_result(instruction, spec, operand, result)
+        if pattern.passes and self._is_pair(spec, operand) and {each.type for each in definition.operands} == {INT, REAL}:
+            name = self.known.new()
+            self.known.spoil(operand, 2)
+            self.known.keep(REAL, operand, name)
+            self.globals["SINGLES"] = singles()
+            return self.access.whole(operand, name, result)
+        if spec.type is REAL and self._is_pair(spec, operand) and not self._flags(instruction, REAL, ""):
             return self._store_result(instruction, spec, operand, result)
         name = self.known.new() if self._is_pair(spec, operand) else "v"
-        return [f"{name} = {result}", *self._store_result(instruction, spec, operand, name)]
+        return [f"{name} = {result}", *self._store_result(instruction, spec, operand, name, self._fits(definition, spec.type, pattern))]
+
+    @staticmethod
+    def _fits(definition: Definition, kind: DataType, pattern: Template) -> bool:
+        """Whether a result needs no wrapping: the operand itself, of a range that registers of `kind`'s width hold."""
+        sources = [spec for spec in definition.operands if not spec.written]
+        if not pattern.passes or len(sources) != 1:
+            return False
+        low, high = sources[0].range or (sources[0].type.low, sources[0].type.high)
+        return kind.stored.low <= low and high <= kind.stored.high
 
     def _copy(self, source: Device, target: Device) -> list[str]:
         """A pair of registers moved as it stands."""
@@ -313,10 +342,12 @@ class Writer:
     def _is_pair(spec: OperandSpec, operand: Operand) -> bool:
         return spec.span is None and Known.pair(spec.type, operand)
 
-    def _store_result(self, instruction: Instruction, spec: OperandSpec, operand, name: str) -> list[str]:
+    def _store_result(self, instruction: Instruction, spec: OperandSpec, operand, name: str, fits: bool = False) -> list[str]:
         as_stored = instruction.definition.as_stored
         kind = spec.type.stored if as_stored else spec.type
         self.known.spoil(operand, max(1, kind.words) if spec.span is None else None)
+        if kind is BOOL or isinstance(operand, Bits):
+            self.known.settled = False  # the bit of an execution error may be among them
         if spec.span is not None:
             if kind.words and kind is not REAL and not as_stored:
                 name = f"wrapped{kind.bits}({name})"
@@ -326,7 +357,7 @@ class Writer:
         if kind is REAL:
             return self._store_real(instruction, operand, name)
         lines = self._flags(instruction, kind, name)
-        if not as_stored:
+        if not (as_stored or fits):
             half, full = 1 << kind.bits - 1, (1 << kind.bits) - 1
             if lines and lines[-1].startswith(INDENT):  # the flags have found the result to be too large already
                 lines.append(f"{INDENT}{name} = ({name} + {half} & {full}) - {half}")
@@ -511,8 +542,6 @@ class Writer:
 
     @staticmethod
     def _signed(variable: Variable):
-        from ..values import DINT, INT
-
         return variable.type if variable.type in (BOOL, REAL) else INT if variable.type.words == 1 else DINT
 
     def guard_faults(self, lines: list[str], operands: tuple[Operand, ...]) -> list[str]:

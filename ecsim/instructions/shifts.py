@@ -86,7 +86,7 @@ def shr(s1, s2):
 @value("DSHL", "S1:DWORD^ >D:DWORD S2:INT=0..32767", steps=9, section="6.7.12")
 def shl(s1, s2):
     """D becomes S1 shifted left by S2 bits; zeros come in at the right."""
-    return s1 << min(s2, 32)
+    return s1 << s2 if s2 < 32 else 0
 
 
 @value("SFTR", "S1:BOOL*S3~ D:BOOL*S2~ S2:INT=0..32767 S3:INT=0..32767 -> D", steps=9, section="6.7.13")
