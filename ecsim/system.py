@@ -6,6 +6,7 @@ from typing import Any
 
 from .devices import Device
 from .errors import EcsimError
+from .hardware.modules import check_settings
 from .hardware.serial import PortSettings
 from .memory import Memory
 from .models import Model
@@ -123,6 +124,7 @@ class SystemBlock:
                 raise EcsimError(f"modules names place {place!r}, which the system block of {model.name} has not; {where} (2.2.1)")
             if not isinstance(settings, dict):
                 raise EcsimError(f"modules: place {place} is set to {settings!r:.40}; write its settings by name")
+            check_settings(model, place, settings)
 
 
 def within(what: str, value: Any, low: float, high: float) -> None:

@@ -55,7 +55,7 @@ def test_a_setting_that_the_model_does_not_have_is_refused(model, settings, says
     ("model", "settings"),
     [
         ("EC20", {"power_loss_ms": 100, "run_input": "X17", "interrupt_priority": {0: "high", 28: "low"}, "no_battery": True}),
-        ("EC10", {"run_input": "X0", "interrupt_priority": {37: "high"}, "format_lock": True, "modules": {3: {}}}),
+        ("EC10", {"run_input": "X0", "interrupt_priority": {37: "high"}, "format_lock": True, "modules": {3: {"kind": "4AD"}}}),
     ],
 )
 def test_the_settings_at_the_end_of_their_ranges_are_taken(model, settings):
