@@ -2,24 +2,22 @@
 
 from pathlib import Path
 
-from .assembler import Program, assemble
+from .assembler import Program
 from .errors import EcsimError, ProgramError
 from .help import help  # noqa: A004 - the public name of the act
 from .plc import Plc
-from .project import own_lines, read_project
+from .project import Project
 from .record import Recording
 from .session import Session
 from .system import SystemBlock
 from .views.listing import listing
 
 __version__ = "0.1.0"
-__all__ = ["EcsimError", "Plc", "Program", "ProgramError", "Recording", "Session", "SystemBlock", "compile", "help"]
+__all__ = ["EcsimError", "Plc", "Program", "ProgramError", "Project", "Recording", "Session", "SystemBlock", "compile", "help"]
 
 Program.face = lambda program: listing(program)._repr_html_()
 
 
-def compile(program: "str | Path", model: str | None = None) -> Program:  # noqa: A001 - the public name of the act
-    """The program of a text, an .il file or a project folder; raises ProgramError with all errors. EC20 unless the project says otherwise."""
-    text, name, chosen = read_project(program)
-    with own_lines(program):
-        return assemble(text, model or chosen.get("model", "EC20"), name)
+def compile(program: "str | Path | Project", model: str | None = None) -> Program:  # noqa: A001 - the public name of the act
+    """The program of a text, an .il file, a project folder or a Project; raises ProgramError with all errors. EC20 unless the project says otherwise."""
+    return Project.of(program).compile(model)

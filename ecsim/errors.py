@@ -19,8 +19,8 @@ class Problem:
     source: str = ""
 
     def __str__(self) -> str:
-        place = f"{self.source}: line {self.line}" if self.source else f"line {self.line}"
-        text = f"{place}, column {self.column}: {self.message}" if self.column else f"{place}: {self.message}"
+        line = f"line {self.line}, column {self.column}" if self.column else f"line {self.line}" if self.line else ""
+        text = ": ".join(part for part in (self.source, line, self.message) if part)
         if self.hint:
             text += f"; {self.hint}"
         return f"{text} (manual {self.section})" if self.section else text

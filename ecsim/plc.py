@@ -1,15 +1,12 @@
 """Plc: one machine with its program, in exact simulated time."""
 
 import copy
-import threading
 from collections.abc import Iterable
 from dataclasses import replace
 from datetime import datetime
 from numbers import Integral
-from pathlib import Path
 from typing import Any
 
-from .assembler import Program, assemble
 from .comms.protocols import PROTOCOLS
 from .devices import Bits, Device
 from .engines import CompiledEngine, SteppingEngine, Trace
@@ -36,7 +33,7 @@ from .hardware.timers import Timers
 from .hardware.unit import Unit
 from .memory import Memory
 from .models import Model, get_model
-from .project import own_lines, read_project
+from .programming import Programming
 from .states import States, alone
 from .system import SystemBlock, within
 from .values import BOOL, DataType
@@ -50,7 +47,7 @@ class Overrun(Exception):
     """The user program took longer than the watchdog allows."""
 
 
-class Plc(States):
+class Plc(Programming, States):
     """A PLC that is powered and in STOP. `scan_ms` is the fixed scan period, None models it from the program's length.
 
     `input_filter_ms` overrides the model's filter (10 ms EC20, 8 ms EC10); `system` is the whole system block. `io` names the
@@ -65,12 +62,12 @@ class Plc(States):
         system: SystemBlock | None = None,
         io: tuple | list | None = None,
     ):
+        super().__init__()
         self.model = get_model(model)
         self.scan_ms = scan_ms
         self.system = replace(system or SystemBlock(), **({} if input_filter_ms is None else {"input_filter_ms": input_filter_ms}))
         self._check_settings(scan_ms, self.system)
         input_filter_ms = self.model.filter_ms if self.system.input_filter_ms is None else self.system.input_filter_ms
-        self.lock = threading.RLock()  # a scan in progress has it, and so has what must not come between: load, force, run ...
         self.memory = Memory(self.model)
         self.faults = Faults(self.memory)
         self.clock = [0]
@@ -112,7 +109,6 @@ class Plc(States):
         self._switch = "ON"
         self._halted = 0  # the serious execution error that has stopped the PLC
         self._run_level = False  # of the run input, when it was looked at last
-        self.program: Program | None = None
         self._engines: dict[type, CompiledEngine | SteppingEngine] = {}
         self._tracing = self._stepping = False
         self._asked = 0
@@ -156,63 +152,14 @@ class Plc(States):
         self.health.happen("system block")
         self.health.happen("data block")
         self._fixed_us = 0 if scan_ms is None else max(round(scan_ms * 1000), system.constant_scan_ms * 1000)
-        if system.input_filter_ms is not None:
-            self.inputs.usual_us = round(system.input_filter_ms * 1000)
-            self.inputs.set_filter(self.inputs.usual_us)
+        self._watchdog_ns = system.watchdog_ms * 1_000_000
+        self.inputs.usual_us = round(1000 * (self.model.filter_ms if system.input_filter_ms is None else system.input_filter_ms))
+        self.inputs.set_filter(self.inputs.usual_us)
+        self.interrupts.first = frozenset(event for event, level in system.interrupt_priority.items() if level == "high")
         for port, settings in zip(self.ports, (system.port0, system.port1), strict=False):
             port.set_up(settings)
 
-    # -- the program --------------------------------------------------------------------------------------------
-
-    @alone
-    def load(self, program: "str | Path | Program") -> Program:
-        """Download a program: its text, the path of an .il file or project folder, or a Program. A running PLC is stopped first.
-
-        A program that does not compile raises ProgramError and leaves the loaded one as it is, running if it ran. What the
-        plc.toml of a project folder sets holds from then on.
-        """
-        self._need_power()
-        if not isinstance(program, Program):
-            text, name, chosen = read_project(program)
-            if chosen.get("model", self.model.name) != self.model.name:
-                raise EcsimError(
-                    f"{name} is a project for {chosen['model']}, this is an {self.model.name}; make a Plc({chosen['model']!r})"
-                )
-            scan_ms, system = chosen.get("scan_ms", self.scan_ms), self.system
-            if "input_filter_ms" in chosen:
-                system = replace(system, input_filter_ms=chosen["input_filter_ms"])
-            self._check_settings(scan_ms, system)
-            with own_lines(program):
-                program = assemble(text, self.model, name)
-            if chosen:
-                self._settle(scan_ms, system)
-        if program.model.name != self.model.name:
-            raise EcsimError(
-                f"the program was compiled for {program.model.name}, this is an {self.model.name}; compile it for {self.model.name}"
-            )
-        compiled = CompiledEngine.__new__(CompiledEngine)
-        slots = self.memory.lists["E"]
-        kept = list(slots)
-        self.memory.slots(program.slots)
-        try:
-            compiled.__init__(program, self.memory, self._services)
-        except BaseException:
-            slots[:] = kept
-            raise
-        if self.running:
-            self.stop()
-        self.program = program
-        self.health.happen("program")
-        self._program_ns = program.steps * self.model.instruction_ns
-        self._engines = {CompiledEngine: compiled}
-        self._names = {name.casefold(): variable.device for name, variable in program.variables.items()}
-        self._with_locals = {
-            unit.name
-            for unit in program.units
-            if any(getattr(operand, "area", None) in self.model.local_areas for i in unit.instructions for operand in i.operands)
-        }
-        self._choose_engine()
-        return program
+    # -- engines ------------------------------------------------------------------------------------------------
 
     @property
     def tracing(self) -> bool:
@@ -644,9 +591,9 @@ class Plc(States):
 
     @alone
     def restore(self, snapshot: dict[str, Any]) -> None:
-        """Go back to a snapshot, also to what was forced then; raises EcsimError for one of another program."""
+        """Go back to a snapshot, also to what was forced then and to before a change in RUN; raises EcsimError for one of another program."""
         if snapshot["program"] is not self.program:
-            raise EcsimError("the snapshot was taken with another program; load that one first")
+            self._return_to(snapshot["program"])
         self.memory.hold(snapshot["forced"])
         self.memory.restore(snapshot["memory"])
         for name, state in snapshot["units"].items():

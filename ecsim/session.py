@@ -81,7 +81,7 @@ class Session:
     def _bind(self) -> None:
         """Look up once what each scan needs."""
         plc = self.plc
-        self._program = plc.program
+        self._program, self._downloads = plc.program, plc.downloads
         self._generation = plc.memory.generation
         wiring = list(self.plant.wiring) if self.plant is not None else []
         places = [(name, plc.memory.parse(name)[0]) for name in wiring]
@@ -110,7 +110,7 @@ class Session:
 
     def _look(self) -> None:
         """Find things again after another program was loaded (there is no way back across that) or a device was forced."""
-        if self.plc.program is not self._program:
+        if self.plc.downloads != self._downloads:
             self.history.clear()
             self.step_since.clear()
         self._bind()

@@ -56,8 +56,9 @@ class SystemBlock:
             raise EcsimError(
                 f"constant_scan_ms is {self.constant_scan_ms}, above the watchdog's {self.watchdog_ms}; raise watchdog_ms (2.1.4)"
             )
-        if self.input_filter_ms is not None and model.filter_choices and self.input_filter_ms not in model.filter_choices:
-            raise EcsimError(f"input_filter_ms is {self.input_filter_ms!r}; {model.name} takes {choice_text(model.filter_choices)}")
+        choices = model.filter_choices
+        if self.input_filter_ms is not None and choices and (isinstance(self.input_filter_ms, bool) or self.input_filter_ms not in choices):
+            raise EcsimError(f"input_filter_ms is {self.input_filter_ms!r}; {model.name} takes {choice_text(choices)}")
         longest = model.limits.get("power loss ms", 0)
         if self.power_loss_ms and not longest:
             raise EcsimError(f"power_loss_ms is {self.power_loss_ms!r}, but {model.name} has no such setting; leave it out (2.2.1)")
@@ -94,13 +95,20 @@ class SystemBlock:
 
     def _check_devices(self, model: Model) -> None:
         """The data block, the output table and the input that puts into RUN name devices that exist, with values that they hold."""
+        if not (self.data_block or self.stop_output_table or self.run_input is not None):
+            return
         memory = Memory(model)
         for where, area in (("data_block", "D"), ("stop_output_table", "Y")):
+            taken: dict[int, str] = {}
             for name, value in getattr(self, where).items():
                 device, kind = memory.parse(name)
-                if device.area != area:
+                if not isinstance(device, Device) or device.area != area:
                     raise EcsimError(f"{where} names {name}; it holds {area} devices")
                 memory.fitting(device, kind, value)
+                for number in range(device.number, device.number + max(1, kind.words)):
+                    if number in taken:
+                        raise EcsimError(f"{where} sets {Device(area, number)} twice, by {taken[number]} and by {name}; leave one out")
+                    taken[number] = name
         if self.run_input is not None:
             device, _ = memory.parse(self.run_input)
             last = Device("X", model.limits.get("run inputs", 0) - 1)

@@ -442,7 +442,7 @@ def test_a_program_of_another_model_is_refused():
 
 
 def test_a_load_of_something_else_is_refused():
-    with pytest.raises(EcsimError, match="a program is a text, a path or a Program, not int"):
+    with pytest.raises(EcsimError, match="a program is a text, a path, a Project or a Program, not int"):
         Plc().load(5)
 
 

@@ -23,17 +23,20 @@ def print_program(program: Program) -> str:
     bare = len(program.units) == 1 and not program.variables and not program.main.variables and program.main.name == "MAIN"
     if bare:
         return print_unit_body(program.main)
-    parts = [_globals(program.variables.values())] if program.variables else []
+    parts = [print_globals(program.variables.values())] if program.variables else []
     parts += [print_unit(unit) for unit in program.units]
     return "\n".join(parts)
 
 
-def print_unit(unit: Unit) -> str:
-    """One unit between its header and its end."""
+CLOSED = "CLOSED"  # what stands for the instructions of a unit that a password closes; it does not compile
+
+
+def print_unit(unit: Unit, closed: bool = False) -> str:
+    """One unit between its header and its end; when closed without its instructions."""
     word = "PROGRAM" if unit.kind == "MAIN" else unit.kind
     head = f"{word} {unit.name}" + (f" EVENT {unit.event}" if unit.event is not None else "")
     rows = [(f"VAR_{v.role} {v.name} : {v.type.name}", v.comment) for v in unit.variables.values()]
-    return "\n".join([head, *_with_comments(rows), print_unit_body(unit) + f"END_{word}\n"])
+    return "\n".join([head, *_with_comments(rows), (f"{CLOSED}\n" if closed else print_unit_body(unit)) + f"END_{word}\n"])
 
 
 def print_unit_body(unit: Unit) -> str:
@@ -58,7 +61,8 @@ def print_instructions(instructions: Sequence[Printable], titles: dict[int, str]
     return "\n".join(lines) + "\n" if lines else ""
 
 
-def _globals(variables: Iterable[Variable]) -> str:
+def print_globals(variables: Iterable[Variable]) -> str:
+    """The table of global variables."""
     variables = list(variables)
     width = max(len(v.name) for v in variables)
     rows = [(f"  {v.name:<{width}} AT {v.device}", v.comment) for v in variables]

@@ -86,6 +86,13 @@ class Unit:
     nodes: list[Network | Region] = field(default_factory=list)
     line: int = 0
     titles: dict[int, str] = field(default_factory=dict)  # index of an instruction -> the whole-line comments before it
+    password: str = ""  # what opens its text (2.1.11), "" for a unit that anyone may read
+    opened: bool = False
+
+    @property
+    def closed(self) -> bool:
+        """Whether its text is to be shown to nobody."""
+        return bool(self.password) and not self.opened
 
     @property
     def parameters(self) -> list[Variable]:

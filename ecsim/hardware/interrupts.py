@@ -32,6 +32,7 @@ class Interrupts(Unit):
         self.edges: list[tuple[int, bool, int]] = []  # input, sense, event: those with a routine
         self.due: dict[int, tuple[int, int]] = {}  # event -> its next moment, its period in us
         self.queue: list[int] = []
+        self.first: frozenset[int] = frozenset()  # the events of high priority: their requests stand before those of the others (2.2.1)
         self.closed = False
         self.inputs: Inputs | None = None  # given after both are made
         self.time = 0
@@ -51,7 +52,8 @@ class Interrupts(Unit):
         if self.closed:
             self.faults.note(QUEUE_FULL)
             return
-        self.queue.append(event)
+        place = sum(other in self.first for other in self.queue) if event in self.first else len(self.queue)
+        self.queue.insert(place, event)
         self.closed = len(self.queue) >= DEPTH
 
     def ended(self) -> None:

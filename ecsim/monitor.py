@@ -1,0 +1,148 @@
+"""The device monitor (2.4.6): chosen devices with type, format, value and whether they are forced, read when they are looked at."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+from .devices import Bits, Device
+from .errors import EcsimError
+from .values import BOOL, REAL, DataType, real_from_words, split
+
+if TYPE_CHECKING:
+    from .plc import Plc
+
+
+def _digits(base: int, per_digit: int) -> Callable[[int | float, DataType], str]:
+    mark, spell = {2: ("2#", "b"), 8: ("8#", "o"), 16: ("16#", "X")}[base]
+
+    def text(value: int | float, kind: DataType) -> str:
+        return str(value) if kind is BOOL else f"{mark}{value & (1 << kind.bits) - 1:0{-(-kind.bits // per_digit)}{spell}}"
+
+    return text
+
+
+def _float(value: int | float, kind: DataType) -> str:
+    return f"{value if kind is REAL else real_from_words(*split(value)):.7g}"
+
+
+def _characters(value: int | float, kind: DataType) -> str:
+    """Two characters a register, the one in the low byte first, as ASC stores them (6.5.16)."""
+    words = range(kind.words)[::-1] if kind.words > 1 else (0,)
+    codes = [value >> 16 * word + shift & 0xFF for word in words for shift in (0, 8)]
+    return repr("".join(chr(code) if 32 <= code < 127 else "." for code in codes))
+
+
+# format -> the text of a value, and which types it suits
+FORMATS: dict[str, tuple[Callable[[int | float, DataType], str], Callable[[DataType], bool]]] = {
+    "decimal": (lambda value, kind: f"{value:d}", lambda kind: kind is not REAL),
+    "hex": (_digits(16, 4), lambda kind: kind is not REAL),
+    "binary": (_digits(2, 1), lambda kind: kind is not REAL),
+    "octal": (_digits(8, 3), lambda kind: kind is not REAL),
+    "float": (_float, lambda kind: kind.bits == 32),
+    "text": (_characters, lambda kind: kind is not REAL and kind.bits >= 16),
+}
+
+
+@dataclass
+class Row:
+    """One device of a monitor. `fmt` may be changed; value, text and forced are those of now."""
+
+    plc: Plc
+    asked: str
+    device: Device | Bits
+    type: DataType
+    chosen: str
+
+    @property
+    def fmt(self) -> str:
+        """How the value is written: decimal, hex, binary, octal, float or text."""
+        return self.chosen
+
+    @fmt.setter
+    def fmt(self, name: str) -> None:
+        if name not in FORMATS or not FORMATS[name][1](self.type):
+            suits = [each for each, (_, suited) in FORMATS.items() if suited(self.type)]
+            raise EcsimError(f"{self.asked} is {self.type.name} and cannot be shown as {name!r}; choose {', '.join(suits)}")
+        self.chosen = name
+
+    @property
+    def symbol(self) -> str:
+        """The name that the program gives the device, "" for none."""
+        return self.plc.names.get(str(self.device), "")
+
+    @property
+    def comment(self) -> str:
+        """What the program's variable table says of it."""
+        return next((v.comment for v in self.plc.program.variables.values() if v.name == self.symbol), "")
+
+    @property
+    def value(self) -> int | float:
+        return self.plc.memory.get(self.device, self.type)
+
+    @property
+    def text(self) -> str:
+        """The value in the row's format."""
+        return FORMATS[self.fmt][0](self.value, self.type)
+
+    @property
+    def forced(self) -> bool:
+        """Whether one of its bits or registers is forced."""
+        forced = self.plc.memory.forces().get(self.plc.memory._list(self.device, self.type), {})
+        length = 4 * self.device.digits if isinstance(self.device, Bits) else max(1, self.type.words)
+        if not isinstance(self.device, Bits) and self.device.area in ("T", "C"):
+            length = 1
+        return any(number in forced for number in range(self.device.number, self.device.number + length))
+
+    @property
+    def cells(self) -> tuple[str, ...]:
+        """The row in words: device, name, type, format, value, forced, comment."""
+        forced = "forced" if self.forced else ""
+        return str(self.device), self.symbol, self.type.name, self.fmt, self.text, forced, self.comment
+
+
+class Monitor:
+    """A table of devices; iterate over its rows, or take one by name. Printed or shown it has the values of that moment."""
+
+    HEADINGS = ("device", "name", "type", "format", "value", "forced", "comment")
+    face: ClassVar[Callable[[Monitor], str] | None] = None  # its HTML for a notebook; the views stand above and are named here
+
+    def __init__(self, plc: Plc, names: tuple[str, ...], fmt: str | dict[str, str] | None):
+        self.plc = plc
+        self.rows: list[Row] = []
+        chosen = fmt if isinstance(fmt, dict) else dict.fromkeys(names, fmt) if fmt is not None else {}
+        unknown = [name for name in chosen if name not in names]
+        if unknown:
+            raise EcsimError(f"fmt names {unknown[0]!r}, which is not in the table; it has {', '.join(names) or 'no rows'}")
+        for name in names:
+            self.add(name, chosen.get(name))
+
+    def add(self, name: str, fmt: str | None = None) -> Row:
+        """One more row."""
+        device, kind = self.plc.memory.parse(name, self.plc._names)
+        row = Row(self.plc, name, device, kind, "float" if kind is REAL else "binary" if kind is BOOL else "decimal")
+        if fmt is not None:
+            row.fmt = fmt
+        self.rows.append(row)
+        return row
+
+    def __iter__(self) -> Iterator[Row]:
+        return iter(self.rows)
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def __getitem__(self, name: str) -> Row:
+        for row in self.rows:
+            if name.casefold() in (row.asked.casefold(), str(row.device).casefold(), row.symbol.casefold()):
+                return row
+        raise EcsimError(f"{name!r} is not in the table; it has {', '.join(row.asked for row in self.rows) or 'no rows'}")
+
+    def _repr_html_(self) -> str | None:
+        return self.face() if self.face else None
+
+    def __repr__(self) -> str:
+        lines = [self.HEADINGS, *(row.cells for row in self.rows)]
+        widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+        return "\n".join("  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip() for line in lines)
