@@ -88,10 +88,10 @@ class Plc(Programming, States):
         self.rtc = RealTimeClock(self.memory, self._awake)
         self.eeprom = Eeprom(self.memory, self._awake)
         self.pots = Potentiometers(self.model.limits.get("potentiometers", 0), self._awake)
-        self.modules = Rack(self.memory, self._awake, self.clock)
+        self.modules = Rack(self.memory, self.health, self.supply, self._awake, self.clock)
         if io is not None:
             self.modules.configure(io)
-        self.analog = BaseAnalog(self.memory, self.clock, lambda: self.modules.analog_points, self._awake)
+        self.analog = BaseAnalog(self.memory, self.supply, lambda: self.modules.analog_points, self._awake, self.clock)
         self.units: dict[str, Unit] = {
             "counters": self.counters, "meters": self.meters, "inputs": self.inputs, "interrupts": self.interrupts,
             "outputs": self.outputs, "servo": self.servo, "limits": self.limits,

@@ -244,6 +244,7 @@ class States:
         kept = not (lost or RETAINED in self.health.damaged)
         if lost or FORCES in self.health.damaged:
             self.memory.hold({})
+        self.modules.power_up()
         self.health.happen("power-up")
         self._halted = 0
         self._rebind()
@@ -382,6 +383,7 @@ class States:
         self._tell("run input", self.system.run_input is not None)
         self.supply.show()
         self.health.show()
+        self.modules.show()
 
     def _tell(self, meaning: str, on: bool) -> None:
         """Turn a special relay ON or OFF by its meaning, if the model has one for it."""

@@ -11,6 +11,7 @@ from numbers import Real
 from ..errors import EcsimError
 from ..memory import Memory
 from ..models.model import AnalogMode, AnalogPort
+from .supply import Supply
 from .unit import Unit
 
 SAMPLE_US = 10_000
@@ -120,9 +121,9 @@ class BaseAnalog(Unit):
     mean starts anew when it is enabled and when its kind of signal changes.
     """
 
-    def __init__(self, memory: Memory, clock: list[int], points: Callable[[], tuple[int, int]], awake: list[Unit]):
+    def __init__(self, memory: Memory, supply: Supply, points: Callable[[], tuple[int, int]], awake: list[Unit], clock: list[int]):
         super().__init__(awake)
-        self.memory, self.clock, self.points = memory, clock, points
+        self.memory, self.supply, self.points, self.clock = memory, supply, points, clock
         self.inputs, self.outputs = memory.model.analog_inputs, memory.model.analog_outputs
         self.signals: list[tuple[str, float] | None] = [None] * len(self.inputs)
         self.means = [Mean() for _ in self.inputs]
@@ -153,7 +154,7 @@ class BaseAnalog(Unit):
 
     def _given(self, port: AnalogPort) -> float:
         model, (mode,) = self.memory.model, port.modes
-        if not self.memory.lists[model.special_bits][port.enable]:
+        if not (self.supply.powered and self.memory.lists[model.special_bits][port.enable]):
             return 0.0
         return signal_of(mode, mode.zero, mode.full, self.memory.lists[model.special_words][port.register])[0]
 

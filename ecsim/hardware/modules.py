@@ -14,6 +14,8 @@ from ..models import Model
 from ..models.model import AnalogMode, ModuleKind
 from ..values import signed16
 from .analog import FACES, MOST_SAMPLES, USUAL_SAMPLES, Mean, Wires, number_of, signal_of, ticks
+from .faults import SystemErrors
+from .supply import Supply
 from .unit import Unit
 
 GROUP = 8  # each unit begins with the next multiple of eight (3.1.3)
@@ -176,7 +178,7 @@ class AnalogModule(Module):
             raise EcsimError(f"a {self.kind} has no outputs; a 4DA has")
         found = []
         for channel in range(self.type.channels):
-            mode = self._mode(channel) if self.present else None
+            mode = self._mode(channel) if self.present and (self.rack is None or self.rack.supply.powered) else None
             given = 0.0
             if mode is not None and mode.unit == unit:
                 given, _ = signal_of(mode, self._get(ZERO, channel), self._get(FULL, channel), self._get(PRESENT, channel))
@@ -345,10 +347,11 @@ class Rack(Unit):
     unit (`Plc("EC20", io=(24, 16))`) every X and Y has a terminal.
     """
 
-    def __init__(self, memory: Memory, awake: list[Unit], clock: list[int]):
+    def __init__(self, memory: Memory, health: SystemErrors, supply: Supply, awake: list[Unit], clock: list[int]):
         super().__init__(awake)
-        self.memory, self.clock = memory, clock
+        self.memory, self.health, self.supply, self.clock = memory, health, supply, clock
         self.model = memory.model
+        self.told: set[str] = set()  # the faults that the modules have reported
         self.base: tuple[int, int] | None = None
         self.digital: list[DigitalModule] = []
         self.modules: dict[int, Module] = {}
@@ -453,12 +456,24 @@ class Rack(Unit):
         if timed and self not in self.awake:
             self.time = self.clock[0]
         self.wake(timed)
+        self._report()
         self.show()
 
+    def _report(self) -> None:
+        """Tell of modules that do not answer or are not those of the system block (errors 21, 22 and 26), and when that is over."""
+        faults = {
+            "I/O module": any(not module.present for module in self.digital),
+            "special module": any(not module.present for module in self.modules.values()),
+            "module configuration": bool(self.misplaced),
+        }
+        for part, faulty in faults.items():
+            if faulty != (part in self.told) and part in self.health.parts:
+                (self.health.damage if faulty else self.health.repair)(self.health.parts[part])
+        self.told = {part for part, faulty in faults.items() if faulty}
+
     def show(self) -> None:
-        """Tell relays and registers what is there (SD7, SD8, SD10 to SD12) and what does not answer (SM191, SM192, SD191, SD192)."""
-        model = self.model
-        words, bits = self.memory.lists[model.special_words], self.memory.lists[model.special_bits]
+        """Tell in registers what is there (SD7, SD8, SD10 to SD12) and what does not answer (SD191, SD192)."""
+        model, words = self.model, self.memory.lists[self.model.special_words]
         extension = [sum(module.inputs for module in self.digital), sum(module.outputs for module in self.digital)]
         silent = [place for place, module in enumerate(self.digital) if not module.present]
         silent_special = [place for place, module in sorted(self.modules.items()) if not module.present]
@@ -470,9 +485,6 @@ class Rack(Unit):
         for meaning, value in values.items():
             if meaning in model.registers:
                 words[model.registers[meaning]] = value
-        for meaning, on in {"module error": silent, "special module error": silent_special}.items():
-            if meaning in model.relays:
-                bits[model.relays[meaning]] = bool(on)
 
     @property
     def analog_points(self) -> tuple[int, int]:
@@ -568,9 +580,6 @@ class Rack(Unit):
             module = self.modules[place]
             if not module.type.output:
                 registers[number] = module.buffers[part * module.type.channels + channel]
-
-    def restart(self, now: int) -> None:
-        self.show()
 
     # -- as a container of special modules ----------------------------------------------------------------------
 

@@ -351,13 +351,25 @@ def test_a_module_that_was_removed_gives_nothing_out():
     assert module.output_volts[0] == 1
 
 
+def test_without_power_nothing_is_given_out(unit):
+    plc = ecsim.Plc("EC20")
+    module = plc.modules.add("4DA")
+    module.write(MEAN, [1000])
+    plc.power_off()
+    assert module.output_volts[0] == 0
+    unit.set({"M8": 1, "M9": 1, "D1": 1000})
+    unit.scan()
+    unit.power_off()
+    assert unit.analog.output_volts == [0]
+
+
 def test_power_up_brings_the_factory_settings():
     plc = ecsim.Plc("EC20")
     module = plc.modules.add("4AD")
     module.write(MODE, [3, -1])
     module.write(SAMPLES, [100])
     module.volts[0] = 2
-    plc.modules.power_up()
+    plc.power_cycle()
     assert (module.read(MODE, 2), module.read(SAMPLES, 1), module.volts[0]) == ([0, 0], [8], 2)
 
 

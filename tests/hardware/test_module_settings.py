@@ -62,6 +62,7 @@ def test_another_module_than_the_one_set_is_misplaced_and_left_alone():
     plc.load("LD SM0\nNOP")
     plc.run()
     assert plc.modules.misplaced == [0]
+    assert ([error.code for error in plc.errors], plc["SD3"], plc.running) == ([26], 26, True)
     plc.modules[1].remove()
     assert plc.modules.misplaced == [0, 1]
     plc["D110"] = 100
@@ -70,6 +71,14 @@ def test_another_module_than_the_one_set_is_misplaced_and_left_alone():
     plc.modules[1].insert()
     plc.scan()
     assert plc.modules[1].output_milliamperes[1] == 20
+
+
+def test_the_right_module_ends_the_error():
+    plc = ecsim.Plc("EC10", io=[(24, 16), "4DA", "4DA"], system=SystemBlock(modules=SETTINGS))
+    plc.run()
+    assert plc["SD3"] == 26
+    plc.modules[0] = "4AD"
+    assert (plc["SD3"], plc.errors) == (0, [])
 
 
 def test_a_snapshot_knows_the_links(plc):

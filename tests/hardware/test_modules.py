@@ -174,6 +174,17 @@ def test_a_special_module_that_was_removed_does_not_answer_until_it_is_back():
     assert (plc["SM20"], plc["SM192"]) == (0, 0)
 
 
+def test_a_module_that_does_not_answer_is_a_system_error_that_stops_nothing_and_clears_itself():
+    plc = running("LD SM0\nNOP", "EC10", io=[(24, 16), (8, 8), "4AD"])
+    plc.modules.digital[0].remove()
+    assert ([error.code for error in plc.errors], plc["SM3"], plc["SD3"]) == ([21], 1, 21)
+    plc.modules[0].remove()
+    assert ([error.code for error in plc.errors], plc.lamps["ERR"], plc.running) == ([21, 22], "flashing", True)
+    plc.modules.digital[0].insert()
+    plc.modules[0].insert()
+    assert (plc.errors, plc["SM3"], plc["SD3"], plc.lamps["ERR"]) == ([], 0, 0, "off")
+
+
 def test_ec10_names_the_module_that_does_not_answer():
     plc = running("LD SM0\nNOP", "EC10", io=[(24, 16), (8, 8), (8, 8), "4AD", "4DA"])
     plc.modules.digital[1].remove()
@@ -195,7 +206,7 @@ def test_power_up_forgets_what_was_removed_and_counts_anew():
     plc = ecsim.Plc("EC20", io=[(24, 16), (8, 8), (16, 0), "4AD", "4DA"])
     plc.modules[0].remove()
     plc.modules.digital[0].remove()
-    plc.modules.power_up()
+    plc.power_cycle()
     assert plc.modules[0].kind == "4DA"
     assert plc.modules.digital[0].first["X"] == 0o30
     assert [plc[f"SD{number}"] for number in (7, 8)] == [1, 1]
