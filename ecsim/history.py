@@ -3,8 +3,8 @@
 from collections.abc import Callable
 from typing import Any
 
-EVERY = 100  # scans between two keyframes
-KEEP = 60  # keyframes kept: a minute at 10 ms a scan
+EVERY = 200  # scans between two keyframes
+KEEP = 30  # keyframes kept: a minute at 10 ms a scan
 
 
 class History:

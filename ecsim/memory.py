@@ -295,11 +295,11 @@ class Memory:
             off = False if part in ("TB", "CB") or self.model.areas.get(part, _WORDS).kind == "bit" else 0
             values[:] = [value if number in keep else off for number, value in enumerate(values)] if keep else [off] * len(values)
 
-    def snapshot(self) -> dict[str, list]:
-        """A copy of every list, by name; of forced devices what they would hold otherwise."""
-        return {name: values.own if isinstance(values, Forced) else list(values) for name, values in self.lists.items()}
+    def snapshot(self) -> dict[str, tuple]:
+        """What every list holds, by name; of forced devices what they would hold otherwise."""
+        return {name: tuple(values.own if isinstance(values, Forced) else values) for name, values in self.lists.items()}
 
-    def restore(self, snapshot: dict[str, list]) -> None:
+    def restore(self, snapshot: dict[str, tuple]) -> None:
         """Put a snapshot back; what is forced stays."""
         for name, values in snapshot.items():
             self.lists[name][:] = values

@@ -269,7 +269,7 @@ class Plc(Programming, States):
             if self.timers.watched:
                 self.timers.advance()
             self._execute()
-            period = self.period_us
+            period = self._fixed_us or self._modelled_us()
             if self._first or period != self._noted_us:
                 self._housekeeping(period)
         else:
@@ -291,8 +291,9 @@ class Plc(Programming, States):
     def end_scan(self, end: int) -> None:
         """The time of a scan has gone by."""
         self.clock[0] = end
-        for unit in tuple(self._awake):
-            unit.advance(end)
+        if self._awake:
+            for unit in tuple(self._awake):
+                unit.advance(end)
         self.scans += 1
 
     def _execute(self) -> None:

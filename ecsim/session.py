@@ -136,7 +136,9 @@ class Session:
                     else:  # a value that comes over a line, as from a scale or a touch screen
                         plc.memory.set(*self._registers[name], level)
         if self._step_values is not None:
-            self._note_steps()
+            steps = self._step_values(plc.memory.lists["S"])
+            if steps != self._last_steps:
+                self._note_steps(steps)
         if self.recording is not None:
             self.recording.sample()
 
@@ -145,10 +147,8 @@ class Session:
         sent, self._sent = self._sent, {name: axis.total for name, axis in self._counted.items()}
         return {name: total - sent[name] for name, total in self._sent.items()}
 
-    def _note_steps(self) -> None:
-        values = self._step_values(self.plc.memory.lists["S"])
-        if values == self._last_steps:
-            return
+    def _note_steps(self, values: tuple) -> None:
+        """Write down which steps began and ended."""
         before = self._last_steps or (False,) * len(values)
         self._last_steps = values
         now, scan = self.plc.clock[0], self.plc.scans
