@@ -39,7 +39,7 @@ from .system import SystemBlock, within
 from .values import BOOL, DataType
 
 # What changes while a Plc runs and is neither memory nor unit.
-STATE = ("scans", "running", "_switch", "_halted", "_run_level", "_first", "_asked", "_spent_ns", "_noted_us")
+STATE = ("scans", "running", "_switch", "_halted", "_run_level", "_first", "_asked", "_took_ns", "_noted_us")
 LONGEST_NS = 5_000_000_000  # a program that takes longer is stopped (61) even where WDT or a watchdog of 0 would let it run
 
 
@@ -48,7 +48,7 @@ class Overrun(Exception):
 
 
 class Plc(Programming, States):
-    """A PLC that is powered and in STOP. `scan_ms` is the fixed scan period, None models it from the program's length.
+    """A PLC that is powered and in STOP. `scan_ms` is the fixed scan period, None models it from the steps that are gone through.
 
     `input_filter_ms` overrides the model's filter (10 ms EC20, 8 ms EC10); `system` is the whole system block. `io` names the
     base unit and its modules, (24, 16) or [(24, 16), (8, 8), "4AD"]; without it every X and Y has a terminal.
@@ -112,8 +112,9 @@ class Plc(Programming, States):
         self._engines: dict[type, CompiledEngine | SteppingEngine] = {}
         self._tracing = self._stepping = False
         self._asked = 0
-        self._spent_ns = self._program_ns = 0  # what this scan's program has taken; what it takes without loops
-        self._limit_ns = 0  # what it may take
+        self._spent = [0]  # ns that program and interrupt programs have taken since the main program ended the last time
+        self._took_ns = self._program_ns = 0  # what that came to when it ended; what it takes without loops and calls
+        self._limit_ns = 0  # what they may take
         self._noted_us = 0
         self._first = True
         self._names: dict[str, Device] = {}
@@ -129,6 +130,7 @@ class Plc(Programming, States):
             "fault": self.faults.note,
             "executed": self.faults.executed,
             "spend": self._spend,
+            "SPENT": self._spent,
             "release": self.release,
             "placed": self.memory.placed,
             "machine": self,
@@ -244,7 +246,7 @@ class Plc(Programming, States):
 
     def _modelled_us(self) -> int:
         """The time that the instructions add up to; a constant scan (SM8) waits for its end."""
-        return max(self.system.constant_scan_ms * 1000, 1000, -(-self._spent_ns // 1000))
+        return max(self.system.constant_scan_ms * 1000, 1000, -(-self._took_ns // 1000))
 
     def _one_scan(self) -> None:
         """One turn of the scan circle (2.1.2), cut before the input refresh."""
@@ -298,15 +300,21 @@ class Plc(Programming, States):
 
     def _execute(self) -> None:
         """The user program, once. What stops it is state of the machine, not an exception."""
-        self._spent_ns = self._program_ns
-        self._limit_ns = self._watchdog_ns or LONGEST_NS
+        spent = self._spent
+        if self._first:
+            spent[0], self._limit_ns = 0, self._watchdog_ns or LONGEST_NS
+        spent[0] += self._program_ns
         try:
             if self._run_program():
                 self.stop()
+            if spent[0] > self._limit_ns:
+                raise Overrun
         except Overrun:
             self._stop_with(WATCHDOG)
         except Exception as error:
             raise self._our_bug(error) from error
+        self._took_ns, spent[0] = spent[0], 0
+        self._limit_ns = self._watchdog_ns or LONGEST_NS
 
     def _housekeeping(self, period_us: int) -> None:
         """After the program: first-scan relays go OFF, scan times are noted."""
@@ -368,6 +376,7 @@ class Plc(Programming, States):
         if self.timers.watched:
             self.timers.advance()
         try:
+            self._take(self._routine_ns[routine])
             if self._engine.run(routine):
                 self.stop()
         except Overrun:
@@ -382,8 +391,8 @@ class Plc(Programming, States):
         self._take(max(1, steps) * self.model.instruction_ns)
 
     def _take(self, ns: int) -> None:
-        self._spent_ns += ns
-        if self._spent_ns > self._limit_ns:
+        self._spent[0] += ns
+        if self._spent[0] > self._limit_ns:
             raise Overrun
 
     def lengthen(self, us: int) -> None:
@@ -398,7 +407,7 @@ class Plc(Programming, States):
     def watchdog_reset(self) -> None:
         """WDT: the watchdog's time counts from zero again; the scan has taken what it has taken."""
         if self._watchdog_ns:
-            self._limit_ns = min(self._spent_ns + self._watchdog_ns, LONGEST_NS)
+            self._limit_ns = min(self._spent[0] + self._watchdog_ns, LONGEST_NS)
 
     def _our_bug(self, error: Exception) -> Exception:
         line, frames = 0, error.__traceback__
@@ -585,6 +594,7 @@ class Plc(Programming, States):
             "watched": dict(self.timers.watched),
             "plc": {name: getattr(self, name) for name in STATE},
             "clock": self.clock[0],
+            "spent": self._spent[0],
             "forced": self.memory.forces(),
             "program": self.program,
             "trace": copy.copy(self.trace),
@@ -604,6 +614,7 @@ class Plc(Programming, States):
         self.clock[0] = snapshot["clock"]
         for name, value in snapshot["plc"].items():
             setattr(self, name, value)
+        self._spent[0] = snapshot["spent"]
         self._rebind()
         trace = snapshot["trace"]
         if trace is not None and SteppingEngine in self._engines:

@@ -106,7 +106,8 @@ class Programming:
     def _install(self, program: Program, engine: CompiledEngine) -> None:
         """Let the PLC run a program from now on."""
         self.program = program
-        self._program_ns = program.steps * self.model.instruction_ns
+        self._program_ns = program.main.length() * self.model.instruction_ns
+        self._routine_ns = {unit.name: unit.length() * self.model.instruction_ns for unit in program.units if unit.event is not None}
         self._engines = {CompiledEngine: engine}
         self._names = {name.casefold(): variable.device for name, variable in program.variables.items()}
         self._with_locals = {

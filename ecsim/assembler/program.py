@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import ClassVar
 
@@ -73,6 +73,15 @@ class Region:
     slot: int = -1
 
 
+def _loops(nodes: list[Network | Region]) -> Iterator[Region]:
+    """The FOR loops among some nodes and inside them."""
+    for node in nodes:
+        if isinstance(node, Region):
+            if node.kind == "FOR":
+                yield node
+            yield from _loops(node.nodes)
+
+
 @dataclass(slots=True)
 class Unit:
     """The main program, a subroutine or an interrupt program (4.2.1)."""
@@ -98,6 +107,14 @@ class Unit:
     def parameters(self) -> list[Variable]:
         """The variables that a CALL gives, in order."""
         return [variable for variable in self.variables.values() if variable.role != "TEMP"]
+
+    def length(self, begin: int = 0, end: int | None = None) -> int:
+        """The steps from one instruction (by index) up to another, gone through once: the bodies of loops that begin there do not count."""
+        end = len(self.instructions) if end is None else end
+        bodies = {
+            place for loop in _loops(self.nodes) if begin <= loop.opening < end for place in range(loop.opening + 1, loop.closing + 1)
+        }
+        return sum(self.instructions[place].steps for place in range(begin, end) if place not in bodies)
 
     def __repr__(self) -> str:
         count, networks = len(self.instructions), len(self.networks)

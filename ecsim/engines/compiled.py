@@ -155,7 +155,7 @@ class Compiler(Writer):
             if clear:
                 lines += [f"elif E[{region.slot}]:", *indented([f"E[{region.slot}] = False", *clear])]
         else:
-            spend = f"spend({sum(i.steps for i in self.unit.instructions[region.opening + 1 : region.closing + 1])})"
+            spend = f"spend({self.unit.length(region.opening + 1, region.closing + 1)})"
             lines = [f"for turn_{region.opening} in range({opened}):", *indented([spend, *inner])]
         return Block(lines, body.count + 1, body.leaves)
 
@@ -369,7 +369,7 @@ class _FlatRung(_Rung):
     def jump(self, number: int) -> None:
         target, here = self.flat.labels[number], self.instruction.position
         back = target <= here
-        cost = sum(i.steps for i in self.unit.instructions if target <= i.position <= here)
+        cost = self.c.way(self.unit, target, here)
         self._when([*([f"spend({cost})"] if back else []), f"return @label_{number}@"])
 
     def leave(self) -> None:
@@ -445,7 +445,7 @@ class _FlatUnit:
             clear = [f"if E[{region.slot}]:", *indented([f"E[{region.slot}] = False", *c.clear_lines(self.unit, region)])]
             lines += [f"if not ({active}):", *indented([*clear, f"return @{end}@"]), f"E[{region.slot}] = True"]
         else:
-            cost = sum(i.steps for i in self.unit.instructions[region.opening + 1 : region.closing + 1])
+            cost = self.unit.length(region.opening + 1, region.closing + 1)
             loop = f"LOOPS[{c.new_loop()}]"
             lines += [f"{loop} = {rung.opened}", f"if {loop} <= 0: return @{end}@"]
             self._mark(f"body_{region.opening}")

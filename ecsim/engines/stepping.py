@@ -375,7 +375,7 @@ class _Builder(Writer):
         position, unit, labels = self.instruction.position, self.unit, self.labels
         spend = self.engine.services["spend"]
         back = next(i.position for i in unit.instructions if i.mnemonic == "LBL" and i.operands[0].value == number)
-        cost = sum(i.steps for i in unit.instructions if back <= i.position <= position)
+        cost = self.way(unit, back, position)
 
         def target() -> int:
             if back <= position:
@@ -494,7 +494,7 @@ class _Builder(Writer):
     def _loop(self, region: Region, turns: list, body: int, after: int):
         left = [0]
         spend = self.engine.services["spend"]
-        cost = sum(i.steps for i in self.unit.instructions[region.opening + 1 : region.closing + 1])
+        cost = self.unit.length(region.opening + 1, region.closing + 1)
 
         def begin(flow) -> int:
             left[0] = turns[0]() if flow else 0

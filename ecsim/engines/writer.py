@@ -509,6 +509,12 @@ class Writer:
                 zeros = "[False]" if spec.type is BOOL else "[0]"
                 yield (*self.access.store_span(spec.type, operand, f"{zeros} * {spec.span or 1}", resets=True),)
 
+    @staticmethod
+    def way(unit: Unit, first: int, last: int) -> int:
+        """The steps that a jump back makes a program go through once more, from its label's position to its own."""
+        begin = unit.instructions[0].position
+        return unit.length(first - begin, last - begin + 1)
+
     def enter_lines(self, callee: Unit, arguments: tuple[Operand, ...]) -> list[str]:
         """A call's beginning: the caller's LM and V put aside, the callee's cleared and loaded (3.1.12, 4.4.3)."""
         loads, stores = [], []
@@ -517,7 +523,8 @@ class Writer:
                 loads.append(f"p{place} = {self.access.load(variable.type, operand)}")
                 text = f"p{place}" if variable.type in (BOOL, REAL) else f"wrapped{variable.type.bits}([p{place}])[0]"
                 stores += self.access.store(variable.type, variable.device, text)
-        return [*loads, f"FRAMES.append({self._frame})", *self._blank_locals(), *stores]
+        takes = f"SPENT[0] += {callee.length() * self.model.instruction_ns}"
+        return [*loads, takes, f"FRAMES.append({self._frame})", *self._blank_locals(), *stores]
 
     @property
     def _frame(self) -> str:
