@@ -5,17 +5,20 @@ from pathlib import Path
 from .assembler import Program
 from .errors import EcsimError, ProgramError
 from .help import help  # noqa: A004 - the public name of the act
+from .monitor import Monitor
 from .plc import Plc
 from .project import Project
 from .record import Recording
 from .session import Session
 from .system import SystemBlock
 from .views.listing import listing
+from .views.monitor import table
 
 __version__ = "0.1.0"
 __all__ = ["EcsimError", "Plc", "Program", "ProgramError", "Project", "Recording", "Session", "SystemBlock", "compile", "help"]
 
 Program.face = lambda program: listing(program)._repr_html_()
+Monitor.face = table
 
 
 def compile(program: "str | Path | Project", model: str | None = None) -> Program:  # noqa: A001 - the public name of the act

@@ -58,6 +58,8 @@ class Ladder:
         self.model = program.model if program else get_model("EC20")
         self.entries: list[Entry] = []
         for unit in units:
+            if unit.closed:
+                continue  # a password closes it (2.1.11)
             labels = Labels(unit, program)
             for place, network in enumerate(unit.networks):
                 self.entries.append(Entry(unit, labels, rung(unit, network), heading(unit) if len(units) > 1 and not place else ""))

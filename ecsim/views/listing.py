@@ -80,7 +80,9 @@ class Listing:
                     variable.comment,
                 )
         labels, steps = Labels(unit, self.program), _steps_of(unit)
-        for index, instruction in enumerate(unit.instructions):
+        if unit.closed:
+            yield Row(0, None, (("comment", "// closed by a password"),))
+        for index, instruction in enumerate(() if unit.closed else unit.instructions):
             region = steps.get(index, ())
             lines = unit.titles[index].split("\n") if index in unit.titles else []
             if index and (lines or _opens(instruction)):

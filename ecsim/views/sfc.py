@@ -38,7 +38,7 @@ class Chart:
         self.unit, self.program = unit, program
         self.model: Model = program.model if program else get_model("EC20")
         self.labels = Labels(unit, program)
-        self.parts: tuple[Part, ...] = parts(unit)
+        self.parts: tuple[Part, ...] = () if unit.closed else parts(unit)  # a password closes it (2.1.11)
         self._sheets: dict[int | None, ChartSheet] = {}
         self._drawn: int | None = None
 
