@@ -9,6 +9,8 @@ from typing import Any
 from .assembler import assemble
 from .errors import EcsimError, ProgramError
 from .hardware.modules import Module
+from .hardware.serial import PortSettings
+from .hardware.wire import Framing, Station
 from .memory import Memory
 from .models import get_model
 from .plc import Plc
@@ -25,8 +27,10 @@ _SYSTEM_KEYS = {
     "watchdog_ms",
     "constant_scan_ms",
     "input_filter_ms",
+    "port0",
+    "port1",
 }
-_STEP_KEYS = {"set", "pulses", "quadrature", "scans", "ms", "expect", "expect_range", "error", "action", "note"}
+_STEP_KEYS = {"set", "pulses", "quadrature", "serial", "scans", "ms", "expect", "expect_range", "error", "action", "note"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,10 +80,15 @@ def run_steps(plc: Plc, steps: list[dict[str, Any]]) -> Iterator[Mismatch]:
         _act(plc, step.get("action"), number)
         plc.set(step.get("set", {}))
         _signals(plc, step)
+        talks = [(talk, _partner(plc, talk)) for talk in step.get("serial", [])]
         if "ms" in step:
             plc.advance(ms=step["ms"])
         else:
             plc.scan(step.get("scans", 0))
+        for talk, partner in talks:
+            sent, expected = partner.taken.hex(" "), bytes.fromhex(talk.get("tx") or "").hex(" ")
+            if "tx" in talk and sent != expected:
+                yield Mismatch(number, f"port {talk['port']}", sent or "nothing", expected or "nothing")
         for name, expected in step.get("expect", {}).items():
             value = plc[name]
             if not same(value, expected, plc.memory.parse(name, plc._names)[1] is REAL):
@@ -101,6 +110,40 @@ def _signals(plc: Plc, step: dict[str, Any]) -> None:
             plc.pulse(name, count, ms)
         if (phases := step.get("quadrature")) is not None:
             plc.quadrature(phases["A"], phases["B"], phases["count"], phases["direction"], ms)
+
+
+ANSWER_US = 20_000  # so long after the last character that a step expects, its answer begins
+
+
+class Partner(Station):
+    """The other end of a port's line: notes each character and says what a step gives it to say."""
+
+    def __init__(self, framing: Framing):
+        super().__init__(self, framing, name="partner")
+        self.taken, self.wanted, self.reply = bytearray(), 0, b""
+
+    def hear(self, message: bytes) -> None:
+        """A message is over; the characters have been noted."""
+
+    def take(self, byte: int, wrong: bool, at: int) -> None:
+        self.taken.append(byte)
+        if self.reply and len(self.taken) == self.wanted:
+            self.answer, self.answer_due, self.reply = self.reply, at + ANSWER_US, b""
+
+
+def _partner(plc: Plc, talk: dict[str, Any]) -> Partner:
+    """The partner on a port, ready for what a step says about it."""
+    port = plc.ports[talk["port"]]
+    if port.wire is None:
+        port.connect(Partner(port.framing))
+    (partner,) = port.wire.stations
+    reply = bytes.fromhex(talk.get("rx") or "")
+    partner.taken, partner.wanted = bytearray(), len(bytes.fromhex(talk.get("tx") or ""))
+    partner.reply = reply if partner.wanted else b""
+    if reply and not partner.wanted:
+        partner.send(reply, port.wire_time())
+        port.stirred()
+    return partner
 
 
 def _act(plc: Plc, action: str | None, number: int) -> None:
@@ -149,6 +192,11 @@ def _system(case: dict[str, Any], model: str) -> SystemBlock:
             area: [(memory.parse(_named(area, first))[0].number, memory.parse(_named(area, last))[0].number) for first, last in ranges]
             for area, ranges in given["retain"].items()
         }
+    for name in ("port0", "port1"):
+        if name in given:
+            role = given[name].get("role")
+            protocol = given[name].get("protocol", "none") + (f" {role}" if role else "")
+            given[name] = PortSettings(**{key: value for key, value in given[name].items() if key != "role"} | {"protocol": protocol})
     filter_ms = given.pop("input_filter_ms", 0)  # ideal inputs until the program executes REFF
     return SystemBlock(**given, input_filter_ms=filter_ms, data_block=case.get("data_block", {}))
 

@@ -180,6 +180,8 @@ class States:
             self.interrupts.fire(POWER_LOSS)
             self._serve_queue()
         self.stop()
+        for port in self.ports:
+            port.power(False)
         self.memory.clear("Y")
         self.supply.powered = False
         self.supply.since = self.clock[0]
@@ -246,6 +248,8 @@ class States:
             self.memory.hold({})
         self.modules.power_up()
         self.health.happen("power-up")
+        for port in self.ports:
+            port.power(True)
         self._halted = 0
         self._rebind()
         self._initialise(hold=False, kept=kept)

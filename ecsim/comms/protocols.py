@@ -4,5 +4,7 @@ from collections.abc import Callable
 
 from ..hardware.serial import Port, Protocol
 from .freeport import Freeport
+from .master import Master
+from .station import SlaveStation
 
-PROTOCOLS: dict[str, Callable[[Port], Protocol]] = {"freeport": Freeport}
+PROTOCOLS: dict[str, Callable[[Port], Protocol]] = {"freeport": Freeport, "modbus master": Master, "modbus slave": SlaveStation}

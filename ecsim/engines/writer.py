@@ -170,7 +170,7 @@ class Writer:
         """What a command gets of a device that it works on: the device itself, or the number of a counter, pulse output or table."""
         if spec.kind == "BLOCK" and not (isinstance(operand, Device) and operand.area == "D"):
             return self.access.load(spec.type, operand)
-        if spec.kind not in ("POINT", "PLACE", "DPLACE"):
+        if spec.kind not in ("POINT", "PLACE", "FRAME", "DPLACE"):
             return self.access.index(operand) if operand.index is not None else str(operand.number)
         name = f"place_{len(self.globals)}"
         self.globals[name] = operand

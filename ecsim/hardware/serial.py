@@ -65,7 +65,7 @@ class PortSettings:
         if number >= len(model.ports):
             raise EcsimError(f"{model.name} has no {where}; it has {len(model.ports)} serial ports")
         _choice(f"the protocol of {where}", self.protocol, model.ports[number].protocols)
-        _choice(f"the mode of {where}", self.mode, MODES)
+        _choice(f"the mode of {where}", self.mode, model.modbus_modes if self.modbus else MODES)
         framing = self.framing
         _choice(f"the baud rate of {where}", framing.baud, model.bauds[self.protocol])
         _choice(f"the parity of {where}", framing.parity, PARITIES)
@@ -151,6 +151,7 @@ class Port(Unit, End):
         self.rank = 5 + number
         self.name = f"port {number}"
         self.map = memory.model.ports[number]
+        self.powered = True
         self.set_up(None)
 
     def set_up(self, settings: PortSettings | None) -> None:
@@ -160,6 +161,11 @@ class Port(Unit, End):
         self.heard: deque[tuple[int, int, bool]] = deque()  # (when, byte, wrong)
         self.protocol = self.protocols.get(self.settings.protocol, Protocol)(self)
         self.stirred()
+
+    def power(self, on: bool) -> None:
+        """Switched off a port neither hears nor sends; switched on it begins anew."""
+        self.powered = on
+        self.set_up(self.settings)
 
     # -- special devices ----------------------------------------------------------------------------------------
 
@@ -232,8 +238,9 @@ class Port(Unit, End):
         self.stirred()
 
     def take(self, byte: int, wrong: bool, at: int) -> None:
-        self.heard.append((max(at, self.clock[0]), byte, wrong))  # nothing is heard before one's own time
-        self.wake()
+        if self.powered:
+            self.heard.append((max(at, self.clock[0]), byte, wrong))  # nothing is heard before one's own time
+            self.wake()
 
     # -- the unit -----------------------------------------------------------------------------------------------
 
@@ -288,11 +295,12 @@ class Port(Unit, End):
     def snapshot(self) -> tuple:
         stations = self.drives
         return (
-            self.sent_so_far(), list(self.heard), self.protocol.snapshot(), None if stations is None else stations.snapshot(), self.clock[0],
+            self.powered, self.sent_so_far(), list(self.heard), self.protocol.snapshot(),
+            None if stations is None else stations.snapshot(), self.clock[0],
         )  # fmt: skip
 
     def restore(self, snapshot: tuple) -> None:
-        sent, heard, protocol, stations, now = snapshot
+        self.powered, sent, heard, protocol, stations, now = snapshot
         self.send_on(sent)
         self.heard = deque(map(tuple, heard))
         self.protocol.restore(protocol)

@@ -5,6 +5,7 @@ from . import (  # noqa: F401
     bits,
     checksums,
     clock,
+    communication,
     compare,
     contacts,
     control,

@@ -57,14 +57,15 @@ SPECIAL: dict[str, tuple[DataType, str, tuple[int, int] | None]] = {
     "PULSE": (BOOL, "Y", (0, 1)),
     "POINT": (BOOL, "Y M S", None),
     "PLACE": (WORD, "D V", None),
+    "FRAME": (INT, "D V", None),
     "DPLACE": (DINT, "D", None),
     "TABLE": (DINT, "D", None),
     "SAVED": (WORD, "D", (6000, 6999)),
     "BLOCK": (WORD, READABLE["WORD"], None),
 }
 # Of these, what a command works on for as long as it is driven: it gets the number of a counter, of a pulse output or of the
-# first D of a table; of a POINT or PLACE the device itself, for what it reads and writes in its own time.
-UNITS = frozenset({"HCOUNTER", "PULSE", "POINT", "PLACE", "DPLACE", "TABLE", "SAVED", "BLOCK"})
+# first D of a table; of a POINT, PLACE or FRAME the device itself, for what it reads and writes in its own time.
+UNITS = frozenset({"HCOUNTER", "PULSE", "POINT", "PLACE", "FRAME", "DPLACE", "TABLE", "SAVED", "BLOCK"})
 
 
 @dataclass(frozen=True, slots=True)

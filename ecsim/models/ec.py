@@ -66,7 +66,7 @@ EC20 = Model(
     limits={
         "steps": 12_000, "MC nesting": 7, "FOR nesting": 8, "CALL nesting": 6, "subroutines": 64, "joined steps": 16,
         "flows": 20, "bit variables": 16, "word variables": 16, "global variables": 500, "stack": 8, "waveforms": 100, "potentiometers": 2,
-        **ec_fast.LIMITS,
+        **ec_fast.LIMITS, **ec_serial.LIMITS,
         "run inputs": 16, "power loss ms": 100, **ec_modules.LIMITS_EC20,
     },
     filter_inputs=0o20,
@@ -83,6 +83,7 @@ EC20 = Model(
     ports=ec_serial.PORTS_EC20,
     bauds=ec_serial.BAUDS,
     baud_codes=ec_serial.BAUD_CODES,
+    buffers=ec_serial.BUFFERS,
     modbus=ec_modbus.RANGES,
     modbus_most=ec_modbus.MOST,
     **ec_fast.EC20,

@@ -52,3 +52,5 @@ PORTS_EC10 = tuple(
 )
 RELAYS = {"exchange done": 135, "exchange failed": 136}
 REGISTERS = {"exchange error": 139}
+BUFFERS = {"inverter request": ("D", 7940, 30), "inverter answer": ("D", 7970, 30)}  # appendix 3: area, first, count
+LIMITS = {"exchanges": 128}  # 6.12.2: MODBUS and inverter instructions in a program

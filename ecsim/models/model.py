@@ -141,6 +141,7 @@ class Model:
     analog_outputs: tuple[AnalogPort, ...] = ()
     analog_base: tuple[int, int] | None = None  # the base unit that has them
     bauds: dict[str, tuple[int, ...]] = field(default_factory=dict)  # protocol -> its baud rates
+    buffers: dict[str, tuple[str, int, int]] = field(default_factory=dict)  # meaning -> area, first and count of what the system uses
     baud_codes: dict[int, int] = field(default_factory=dict)  # baud rate -> what the mode word of a port says for it
 
     def timer_base_us(self, number: int) -> int:

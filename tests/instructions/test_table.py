@@ -34,6 +34,7 @@ DIFFERENT = {
     ("SUM", "flags"): (["borrow", "carry", "zero"], "6.3.19: carry and borrow are always 0 afterwards"),
     ("ASC", "operands"): (["S", "D"], "the characters S1 to S8 are written as one word"),
     ("PID", "S3 role"): ("dest", "S3+7 to S3+14 and S3+19 are written"),
+    ("EVRDST", "models"): (["EC10"], "the inverter instructions exist on EC10, say the index and the other eight operand tables"),
     **{(mnemonic, "flags"): ([], FLAGS) for mnemonic in ("ZRN", "PLSV", "DRVI", "DRVA", "ABS")},
 }
 # Operands that the text calls otherwise than the operand table: (mnemonic, name in the text) -> name in the table.
