@@ -163,11 +163,10 @@ class Programming:
         engine = self._engine_for(program, make_room)
         for claim in held:
             self.release(claim)
-        timers = {device.number for device in self.in_use(("T",))}
         self._line.append(program)
         self._install(program, engine)
         self._assign()
-        for number in timers - {device.number for device in self.in_use(("T",))}:
+        for number in _driven_timers(former) - _driven_timers(program):
             self.memory.lists["DUE"][number] = 0
             self.timers.watched.pop(number, None)
         self._files = {"main.il": program.source}
@@ -292,3 +291,8 @@ class Programming:
             "clock": self.clock_time,
             "forced": len(self.forced),
         }
+
+
+def _driven_timers(program: Program) -> set[int]:
+    written = (i.operands[0] for i in program.instructions if i.definition.form == "always" and i.operands)
+    return {device.number for device in written if getattr(device, "area", "") == "T"}

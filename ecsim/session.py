@@ -333,6 +333,12 @@ class Session:
         self.plc._check_write(device, value)
         self.post(lambda plc: plc.__setitem__(device, value))
 
+    def edit(self, program: Any) -> None:
+        """Change the program in RUN before the next scan, as `Plc.edit` does; what that would refuse is refused here, and a step back stays possible."""
+        with self._lock:
+            self.plc.check_edit(program)
+        self.post(lambda plc: plc.edit(program))
+
     def _do(self, action: Callable[[Plc], Any]) -> None:
         with self._lock:
             self._drain()
