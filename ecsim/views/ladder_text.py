@@ -97,6 +97,9 @@ def draw(ladder: Ladder) -> str:
         for line in entry.rung.title.split("\n") if entry.rung.title else []:
             canvas.write(row, rails[-1] + 2, line)
             row += 1
+        if not is_drawn(entry.rung):  # the program step stands below the network's number
+            row += not entry.rung.title
+            canvas.write(row, 0, padded(str(entry.rung.words[0].step), RAIL - 2, ">"))
         if is_drawn(entry.rung):
             row = _rung(canvas, layouts[id(entry.labels)], entry, rails[-1], right, row)
         elif is_bus(entry.rung):
@@ -167,7 +170,6 @@ def _symbol(canvas: Canvas, labels: Labels, symbol: Symbol, rail: int, wire: int
 def _bus(canvas: Canvas, entry: Entry, rail: int, row: int) -> int:
     words = entry.rung.words
     letters = "".join(f"[{' '.join([w.mnemonic, *(_inline(entry.labels.of(w, n)) for n in range(len(w.operands)))])}]" for w in words)
-    canvas.write(row, 0, padded(str(words[0].step if entry.rung.title else entry.rung.number + 1), RAIL - 2, ">"))
     canvas.horizontal(row, rail, rail + RAIL_STEP + 2)
     canvas.write(row, rail + RAIL_STEP + 2, letters)
     return row + 1

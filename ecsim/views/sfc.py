@@ -247,7 +247,8 @@ class ChartSheet:
         actions = node.step.actions if node.step else ()
         high = max(HIGH, ROW * len(actions)) if len(actions) < 3 else HIGH
         y += (high - HIGH) / 2
-        parts = [s.tip("\n".join(filter(None, [str(label), node.step.title if node.step else ""])))]
+        program_step = f"program step {node.step.opening.words[0].step}" if node.step else ""
+        parts = [s.tip("\n".join(filter(None, [str(label), node.step.title if node.step else "", program_step])))]
         parts.append(s.element("rect", None, class_="box", x=left, y=y, width=STEP, height=HIGH, rx=2))
         if device.number < self.model.initial_steps:
             parts.append(s.element("rect", None, class_="inner", x=left + 3.5, y=y + 3.5, width=STEP - 7, height=HIGH - 7, rx=1))

@@ -1,5 +1,6 @@
 """The ladder: what a rung is as data, how it looks as text and as SVG, and what it shows of a running PLC."""
 
+import re
 from xml.etree import ElementTree
 
 import pytest
@@ -9,7 +10,9 @@ from ecsim import Plc
 from ecsim.assembler import assemble
 from ecsim.views import svg
 from ecsim.views.ladder import ladder
+from ecsim.views.listing import listing
 from ecsim.views.rungs import Block, Contact, Gate, Output, Parallel, Series, rungs
+from ecsim.views.sfc import chart
 
 from .programs import charts, ladders
 
@@ -124,15 +127,18 @@ PICTURES = {
    4  │ ├─┬┤D0 = 5├───────┬─┤¬├──────────────────────────────────────────(R)───┤
       │ │ └┤D2 D≥ 100000├─┘                                                    │
       │                                                                        │
-   3  ├───[MCR 0]                                                              │""",
+   3  │                                                                        │
+  19  ├───[MCR 0]                                                              │""",
     "STL S0\n// wait\nLD X0\nSET S20\nSTL S20\nOUT Y0\nLD X1\nOUT S0\nRET": """\
-   1  ├─┬─[STL S0]                                                             │
+   1  │                                                                        │
+   0  ├─┬─[STL S0]                                                             │
       │ │                                                                      │
    2  │ │ wait                                                                 │
       │ │  X0                                                            S20   │
    3  │ ├─┤ ├────────────────────────────────────────────────────────────(S)───┤
       │                                                                        │
-   3  ├─┬─[STL S20]                                                            │
+   3  │                                                                        │
+   7  ├─┬─[STL S20]                                                            │
       │ │                                                                      │
    4  │ │                                                                 Y0   │
   10  │ ├────────────────────────────────────────────────────────────────( )───┤
@@ -140,8 +146,20 @@ PICTURES = {
    5  │ │  X1                                                             S0   │
   11  │ ├─┤ ├────────────────────────────────────────────────────────────( )───┤
       │                                                                        │
-   6  ├───[RET]                                                                │""",
+   6  │                                                                        │
+  15  ├───[RET]                                                                │""",
 }
+
+
+def test_each_network_shows_its_program_step_on_every_face():
+    """The steps that the manual counts: STL 3, OUT of a step 3, SET of a step 3, RET 1, contacts and coils 1 (chapter 5), DADD 10 (6.3.10)."""
+    program = assemble("STL S0\nOUT Y0\nLD X0\nSET S20\nSTL S20\nLD X1\nOUT S0\nRET\nLD M0\nDADD D0 D2 D4\nLD M1\nOUT Y1", "EC20")
+    steps = ["0", "3", "4", "8", "11", "15", "16", "27"]
+    found = ladder(program)
+    assert re.findall(r'"step-no end"[^>]*>(\d+)<', found.svg()) == steps
+    assert re.findall(r"^ +(\d+) +[├│]", str(found), re.MULTILINE)[1::2] == steps
+    assert re.findall(r"program step (\d+)", chart(program).svg()) == ["0", "8"]
+    assert [str(row.step) for row in listing(program).rows if row.step is not None and str(row.step) in steps] == steps
 
 
 @pytest.mark.parametrize("text", PICTURES)
