@@ -1,10 +1,18 @@
 """The way back: keyframes and the actions between them. The same actions at the same scans give the same run."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from typing import Any
 
 EVERY = 200  # scans between two keyframes
 KEEP = 30  # keyframes kept: a minute at 10 ms a scan
+
+
+class Overwrites(dict):
+    """Writes from outside before one scan, by what they overwrite: only the last of each counts. Called, it repeats them in order."""
+
+    def __call__(self) -> None:
+        for write in self.values():
+            write()
 
 
 class History:
@@ -25,6 +33,14 @@ class History:
         """An action from outside, done before scan number `scan`."""
         self.actions.append((scan, self.noted, action))
         self.noted += 1
+
+    def overwrite(self, scan: int, key: Hashable, write: Callable[[], None]) -> None:
+        """A write before scan number `scan` that leaves nothing of an earlier one with the same key; however many come, one is remembered."""
+        if not self.actions or self.actions[-1][0] != scan or not isinstance(self.actions[-1][2], Overwrites):
+            self.note(scan, Overwrites())
+        writes = self.actions[-1][2]
+        writes.pop(key, None)
+        writes[key] = write
 
     def tick(self, scan: int) -> None:
         """Called before each scan: takes a keyframe when one is due."""

@@ -32,6 +32,18 @@ def rtu_decode(frame: bytes) -> tuple[int, bytes]:
     return frame[0], bytes(frame[1:-2])
 
 
+_REQUESTS = {1: 8, 2: 8, 3: 8, 5: 8, 6: 8, 8: 8}  # function -> characters of its RTU request
+
+
+def rtu_request(frame: bytes) -> bool:
+    """Whether the characters are just one sound request of a known function, so that a slave need not wait for the silence behind it."""
+    length = len(frame)
+    if length < 8:
+        return False
+    expected = 9 + frame[6] if frame[1] in (15, 16) else _REQUESTS.get(frame[1])
+    return length == expected and crc16(frame) == 0  # the CRC of a frame with its CRC
+
+
 def ascii_encode(station: int, message: bytes) -> bytes:
     """The frame of a message: a colon, station, message and LRC as hexadecimal digits, CR LF."""
     frame = bytes((station,)) + message

@@ -32,11 +32,12 @@ class Refusal(Exception):
 class Slave:
     """One station of a line: answers messages from the devices of a memory, and keeps the line's diagnostic counters.
 
-    `carry_out` is given each write as a function without arguments and calls it, at once unless said otherwise.
+    A write goes to `write(name of the list, number of the first device, values)`; unless said otherwise that is `memory.receive`.
     """
 
-    def __init__(self, memory: Memory, station: int = 1, carry_out: Callable[[Callable[[], None]], None] = lambda write: write()):
-        self.memory, self.station, self.carry_out = memory, station, carry_out
+    def __init__(self, memory: Memory, station: int = 1, write: Callable[[str, int, list], None] | None = None):
+        self.memory, self.station = memory, station
+        self._write = write or memory.receive
         self.most = memory.model.modbus_most
         self.counts: Counter[str] = Counter()
         self.listening = False  # listen-only mode: nothing is carried out, nothing answered
@@ -139,9 +140,6 @@ class Slave:
                 return run, run.first + place // run.words
         raise Refusal(ILLEGAL_ADDRESS)
 
-    def _put(self, run: ModbusRange, first: int, values: list) -> None:
-        self.carry_out(lambda: self.memory.receive(run.name, first, values))
-
     def _read_bits(self, function: int, content: bytes) -> bytes:
         address, count = _two(content)
         run, first = self._range(function, address, count)
@@ -161,13 +159,13 @@ class Slave:
         if value not in (ON, OFF):
             raise Refusal(ILLEGAL_DATA)
         run, number = self._range(function, address, 1)
-        self._put(run, number, [value == ON])
+        self._write(run.name, number, [value == ON])
         return content
 
     def _write_word(self, function: int, content: bytes) -> bytes:
         address, value = _two(content)
         run, number = self._range(function, address, 1)
-        self._put(run, number, [signed16(value)])
+        self._write(run.name, number, [signed16(value)])
         return content
 
     def _write_bits(self, function: int, content: bytes) -> bytes:
@@ -176,7 +174,7 @@ class Slave:
         if len(octets) != (count + 7) // 8:
             raise Refusal(ILLEGAL_DATA)
         bits = int.from_bytes(octets, "little")
-        self._put(run, first, [bool(bits >> place & 1) for place in range(count)])
+        self._write(run.name, first, [bool(bits >> place & 1) for place in range(count)])
         return content[:4]
 
     def _write_words(self, function: int, content: bytes) -> bytes:
@@ -187,7 +185,7 @@ class Slave:
         words = unpack(f">{count}h", octets)
         if run.words == 2:  # high word first
             words = [wrap(join(high, low), DINT) for high, low in zip(words[::2], words[1::2], strict=True)]
-        self._put(run, first, list(words))
+        self._write(run.name, first, list(words))
         return content[:4]
 
     def _diagnose(self, function: int, content: bytes) -> bytes:

@@ -445,8 +445,7 @@ def test_state_is_plain_data_and_comes_back(slave, plc):
 
 def test_writes_go_by_the_way_they_are_given(plc):
     writes = []
-    slave = Slave(plc.memory, carry_out=writes.append)
+    slave = Slave(plc.memory, write=lambda *write: writes.append(write))
     assert slave.answer(request(6, 3, 9)) == request(6, 3, 9)
     assert plc["D3"] == 0
-    writes.pop()()
-    assert plc["D3"] == 9
+    assert writes == [("D", 3, [9])]
