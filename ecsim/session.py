@@ -161,14 +161,14 @@ class Session:
                     self.step_since.pop(f"S{number}", None)
 
     def _take(self) -> tuple:
-        plant = _state(self.plant)
+        plant = plant_state(self.plant)
         return self.plc.snapshot(), plant, self._plant_on, dict(self.step_since), list(self.log)
 
     def _put(self, frame: tuple) -> None:
         snapshot, plant, on, since, log = frame
         self.plc.restore(snapshot)
         self._bind()
-        _restore(self.plant, plant)
+        restore_plant(self.plant, plant)
         self._plant_on = on
         self._last_driven = self._last_sensors = None
         self.step_since = dict(since)
@@ -333,14 +333,6 @@ class Session:
         self.plc._check_write(device, value)
         self.post(lambda plc: plc.__setitem__(device, value))
 
-    def receive(self, name: str, first: int, values: list) -> None:
-        """Write devices as `Memory.receive` does, between two scans; a step back repeats it. It is for communication partners, who hold the Plc's lock."""
-        receive = self.plc.memory.receive
-        self.history.overwrite(self.plc.scans, (name, first, len(values)), lambda: receive(name, first, values))
-        receive(name, first, values)
-        if self.state != "running":
-            self._asked = True  # observers see it soon, however many writes come
-
     def edit(self, program: Any) -> None:
         """Change the program in RUN before the next scan, as `Plc.edit` does; what that would refuse is refused here, and a step back stays possible."""
         with self._lock:
@@ -473,15 +465,15 @@ def _fitting_speed(speed: float | None) -> float | None:
     return speed
 
 
-def _state(plant: Any) -> Any:
+def plant_state(plant: Any) -> Any:
     """What a plant remembers: its own `state()`, or a copy of its attributes."""
     if plant is None:
         return None
     return plant.state() if callable(getattr(plant, "state", None)) else copy.deepcopy(vars(plant))
 
 
-def _restore(plant: Any, state: Any) -> None:
-    """Give a plant back what `_state` got from it."""
+def restore_plant(plant: Any, state: Any) -> None:
+    """Give a plant back what `plant_state` got from it."""
     if plant is None:
         return
     if callable(getattr(plant, "restore", None)):

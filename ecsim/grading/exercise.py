@@ -8,12 +8,15 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..errors import EcsimError
 from ..models import get_model
 from .rules import Rule, check
 from .run import Scenario
+
+if TYPE_CHECKING:
+    from .report import Report
 
 PACKAGE = "ecsim_exercises"
 
@@ -59,6 +62,16 @@ class Exercise:
     def wiring(self) -> Mapping[str, Any]:
         """Device -> point of the machine, with `name` and `what`."""
         return self.plant().wiring
+
+    def grade(self, program: Any, model: str | None = None, *, more: int = 0, seed: int = 0) -> "Report":
+        """Judge a program (text, path or Program) by what the machine does under it; it need not compile.
+
+        `more` draws so many further runs of each scenario, from `seed`, to look for a failure; what is found is made as
+        short as it can be. A file that cannot be read raises EcsimError.
+        """
+        from .grade import grade
+
+        return grade(self, program, model, more=more, seed=seed)
 
     # -- its texts ----------------------------------------------------------------------------------------------
 

@@ -14,10 +14,11 @@ from .signals import condition, rises, value_at
 
 
 class Finding(NamedTuple):
-    """How a rule was broken: known after scan `scan`, going on from scan `since`, and in words."""
+    """How a rule was broken: known after scan `scan`, from scan `since` to `until` (not included), and in words."""
 
     scan: int
     since: int
+    until: int
     words: str
 
 
@@ -45,6 +46,18 @@ class _Rule:
     def lanes(self) -> tuple[str, ...]:
         """The lanes it looks at, as named in its conditions."""
         return tuple(dict.fromkeys(lane for text in self.conditions for lane in condition(text).lanes))
+
+    @property
+    def at_fault(self) -> tuple[str, ...]:
+        """The conditions whose lanes are at fault when it is broken; others only tell when it holds."""
+        return self.conditions[:1]
+
+    @property
+    def marked(self) -> tuple[str, ...]:
+        """The lanes that a chart marks: those named outside functions in what is at fault."""
+        conditions = [condition(text) for text in self.at_fault]
+        direct = dict.fromkeys(name for one in conditions for name in one.names if name not in one.parts)
+        return tuple(direct) or self.lanes
 
     def applies(self, scenario: str) -> bool:
         """Whether it judges a scenario: all of them unless `scenarios` names some."""
@@ -85,7 +98,7 @@ class Never(_Rule):
         for start, end in trace.intervals(self.condition):
             if end - start > self.grace:
                 words = f"{_now(self, trace, start + self.grace)} for {_duration(trace, end - start)}."
-                return Judgement(True, Finding(start + self.grace, start, words))
+                return Judgement(True, Finding(start + self.grace, start, end, words))
         return Judgement(tried)
 
 
@@ -120,7 +133,7 @@ class Within(_Rule):
                 continue
             later = next((first for first, _ in answers if first > due), None)
             found = "not at all" if later is None else f"only after {_duration(trace, later - start)}"
-            return Judgement(True, Finding(due, start, f"{self.then} came {found}: {_now(self, trace, due)}."))
+            return Judgement(True, Finding(due, start, later or due, f"{self.then} came {found}: {_now(self, trace, due)}."))
         return Judgement(bool(begun))
 
 
@@ -158,9 +171,9 @@ class Lasts(_Rule):
             tried = tried or over
             words = f"{self.condition} held for {_duration(trace, end - start)}."
             if most is not None and end - start > most:
-                return Judgement(True, Finding(start + most, start, words))
+                return Judgement(True, Finding(start + most, start, end, words))
             if over and end - start < least and not value_at(excuse, end):
-                return Judgement(True, Finding(end, start, words))
+                return Judgement(True, Finding(end, start, end, words))
         return Judgement(tried)
 
 
@@ -179,6 +192,10 @@ class Order(_Rule):
         return (*self.events, *filter(None, (self.restart,)))
 
     @property
+    def at_fault(self) -> tuple[str, ...]:
+        return self.events
+
+    @property
     def demand(self) -> str:
         return self.expected or f"{', then '.join(self.events)}."
 
@@ -192,7 +209,7 @@ class Order(_Rule):
                 awaited = 0
             elif place != awaited:
                 words = f"{self.events[place]} came where {self.events[awaited]} was due."
-                return Judgement(True, Finding(scan, before, words))
+                return Judgement(True, Finding(scan, before, scan + 1, words))
             else:
                 awaited = (awaited + 1) % len(self.events)
                 rounds += awaited == 0
@@ -232,10 +249,12 @@ class Count(_Rule):
             tried = tried or over
             mine = [scan for scan in happened if start <= scan < end]
             if self.most is not None and len(mine) > self.most:
-                return Judgement(True, Finding(mine[self.most], start, f"{self.event} came for the {_nth(self.most + 1)} time."))
+                return Judgement(
+                    True, Finding(mine[self.most], start, mine[self.most] + 1, f"{self.event} came for the {_nth(self.most + 1)} time.")
+                )
             if over and len(mine) < self.least:
                 words = f"{self.event} came {_times(len(mine))} in {_duration(trace, end - start)}."
-                return Judgement(True, Finding(min(end, trace.end - 1), mine[-1] if mine else start, words))
+                return Judgement(True, Finding(min(end, trace.end - 1), mine[-1] if mine else start, end, words))
         return Judgement(tried)
 
 
@@ -258,12 +277,16 @@ class Custom(_Rule):
         return (*self.watch, *filter(None, (self.needs,)))
 
     @property
+    def at_fault(self) -> tuple[str, ...]:
+        return self.watch
+
+    @property
     def demand(self) -> str:
         return self.expected or f"{self.words}."
 
     def judge(self, trace: Trace) -> Judgement:
         for since, scan, words in self.look(trace):
-            return Judgement(True, Finding(scan, since, words))
+            return Judgement(True, Finding(scan, since, scan + 1, words))
         return Judgement(not self.needs or bool(trace.intervals(self.needs)))
 
 
@@ -298,9 +321,16 @@ def shown(name: str, value: Any) -> str:
     """A lane's value in words."""
     if isinstance(value, bool):
         return f"{name} {'on' if value else 'off'}"
-    if isinstance(value, tuple):
-        return f"{name}: {'; '.join(map(str, value)) or 'none'}"
+    if isinstance(value, (tuple, list)):
+        return f"{name}: {worded(value) or 'none'}"
     return f"{name} {value:g}" if isinstance(value, float) else f"{name} {value}"
+
+
+def worded(value: Any) -> str:
+    """What is no number, in words; of a list the last entry, of what happened on a machine what it was."""
+    if isinstance(value, (tuple, list)) and not hasattr(value, "what"):
+        return worded(value[-1]) if value else ""
+    return str(getattr(value, "what", value))
 
 
 def _scans(count: int) -> str:

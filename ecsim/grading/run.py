@@ -22,8 +22,8 @@ STEP = "Step"  # the lane of the active steps, which charts show and rules leave
 class Do:
     """One act of the operator; acts are done one after the other.
 
-    It is done at second `at` of the run, or `after` seconds behind the moment at which `when` holds, or behind the act
-    before it. `set` maps devices, or names of the wiring, to values; with `hold` they go back to 0 after so many
+    It is done at second `at` of the run, or `after` seconds behind the moment at which `when` holds (now, if it does
+    already), or behind the act before it. `set` maps devices, or names of the wiring, to values; with `hold` they go back to 0 after so many
     seconds. `act(plc, plant)` is for all else: a fault of the machine, power off and on. Without any it only waits.
     """
 

@@ -95,6 +95,14 @@ RULES = (
     ),
     Within("rolls", "With both lifts up the rollers turn", f"rise(Up) and {ARMED}", "Rollers", 1.0, unless="Emerg"),
     Never(
+        "lifts-stay",
+        "The lifts stay up until the pallet is across",
+        f"between(rise(Up) and {ARMED}, Across or Emerg) and not (LiftL and LiftR)",
+        grace=2,
+        needs="Up",
+        expected="Both lifts ON from the moment they are up until Across.",
+    ),
+    Never(
         "rollers-up",
         "The rollers turn only while the lifts are up",
         "Rollers and not Up",

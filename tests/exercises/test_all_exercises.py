@@ -1,0 +1,78 @@
+"""Every exercise, by one measure: its solutions keep all rules, its starter does not, each mistake breaks the rule that it names."""
+
+import re
+
+import pytest
+
+import ecsim
+from ecsim.grading import exercise_names, find_exercise
+
+EXERCISES = exercise_names()
+SOLUTIONS = [(name, solution) for name in EXERCISES for solution in find_exercise(name).solutions]
+MISTAKES = [(name, mistake) for name in EXERCISES for mistake in find_exercise(name).mistakes]
+
+
+def test_there_are_exercises():
+    assert "conveyor" in EXERCISES
+
+
+@pytest.mark.parametrize(("name", "solution"), SOLUTIONS)
+def test_a_correct_program_keeps_every_rule(name, solution):
+    exercise = find_exercise(name)
+    for model in exercise.models:
+        report = exercise.grade(exercise.solutions[solution], model)
+        assert report.passed, str(report)
+
+
+@pytest.mark.parametrize(("name", "mistake"), MISTAKES)
+def test_a_mistake_breaks_the_rule_that_it_names(name, mistake):
+    exercise = find_exercise(name)
+    text, rule = exercise.mistakes[mistake]
+    report = exercise.grade(text)
+    assert report.problems == []
+    assert report[rule].state == "failed", str(report)
+
+
+@pytest.mark.parametrize("name", EXERCISES)
+class TestExercise:
+    def test_the_starter_compiles_and_is_no_solution(self, name):
+        exercise = find_exercise(name)
+        report = exercise.grade(exercise.starter)
+        assert report.problems == []
+        assert not report.passed
+        assert report.marks <= 0.6 * report.out_of
+
+    def test_it_has_what_a_course_needs(self, name):
+        exercise = find_exercise(name)
+        assert len(exercise.solutions) >= 3
+        assert len(exercise.mistakes) >= 4
+        assert len({rule for _, rule in exercise.mistakes.values()}) >= 3
+        assert len(exercise.hints) >= 3
+        assert exercise.statement.startswith("# ")
+
+    def test_the_statement_names_every_point(self, name):
+        exercise = find_exercise(name)
+        missing = [
+            device for device, point in exercise.wiring.items() if device not in exercise.statement or point.name not in exercise.statement
+        ]
+        assert missing == []
+
+    def test_names_can_stand_in_conditions_and_programs(self, name):
+        names = [point.name for point in find_exercise(name).wiring.values()]
+        assert [one for one in names if not re.fullmatch(r"[A-Za-z]\w{0,7}", one)] == []
+        assert len({one.casefold() for one in names}) == len(names)
+
+    def test_the_solutions_differ(self, name):
+        exercise = find_exercise(name)
+        programs = [ecsim.compile(text, exercise.models[0]) for text in exercise.solutions.values()]
+        written = [[str(instruction) for instruction in program.instructions] for program in programs]
+        assert all(one != other for place, one in enumerate(written) for other in written[:place])
+
+    def test_every_rule_is_tried_by_the_reference(self, name):
+        exercise = find_exercise(name)
+        report = exercise.grade(exercise.solution)
+        assert [verdict.rule for verdict in report.verdicts if verdict.state == "untried"] == []
+
+    def test_a_longer_search_finds_nothing_wrong_with_the_reference(self, name):
+        exercise = find_exercise(name)
+        assert exercise.grade(exercise.solution, more=12, seed=7).passed
