@@ -6,6 +6,7 @@ from .assembler import Program
 from .errors import EcsimError, ProgramError
 from .help import help  # noqa: A004 - the public name of the act
 from .monitor import Monitor
+from .modbus import serve
 from .plc import Plc
 from .project import Project
 from .record import Recording
@@ -15,7 +16,7 @@ from .views.listing import listing
 from .views.monitor import table
 
 __version__ = "0.1.0"
-__all__ = ["EcsimError", "Plc", "Program", "ProgramError", "Project", "Recording", "Session", "SystemBlock", "compile", "help"]
+__all__ = ["EcsimError", "Plc", "Program", "ProgramError", "Project", "Recording", "Session", "SystemBlock", "compile", "help", "serve"]
 
 Program.face = lambda program: listing(program)._repr_html_()
 Monitor.face = table
