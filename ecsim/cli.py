@@ -1,4 +1,4 @@
-"""The command `ecsim`: check programs, run conformance cases, tell about instructions."""
+"""The command `ecsim`: run and check programs, run conformance cases, tell about instructions."""
 
 import argparse
 import json
@@ -7,12 +7,15 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 
-from . import __version__
+from . import __version__, terminal
 from . import compile as compile_program
 from .errors import EcsimError, ProgramError
 from .help import help as help_on
 from .models import MODELS
+from .plc import Plc
+from .project import Project
 from .scenario import load_cases, run_case
+from .session import Session
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -38,11 +41,31 @@ def _parser() -> argparse.ArgumentParser:
     cases.add_argument("--stepping", action="store_true", help="use the stepping engine")
     cases.set_defaults(act=_cases)
     check = commands.add_parser(
-        "check", help="compile a program and list its errors", description="Compile a program and list all its errors."
+        "check",
+        help="compile a program and list its errors",
+        description="Compile a program and list all its errors and those of its settings.",
+        epilog="Ends with 0 when there are none, with 1 when there are some, with 2 when it cannot be read.",
     )
     check.add_argument("program", type=Path, metavar="PROGRAM", help="an .il file or a project folder")
     check.add_argument("--model", choices=list(MODELS), help="EC20 unless the project says otherwise")
     check.set_defaults(act=_check)
+    run = commands.add_parser(
+        "run",
+        help="run a program",
+        description="Run a program with a live view, or with --ms or --until without one: then the devices are printed at the end.",
+        epilog="Ends with 0, with 1 when the program does not compile, --until did not come true or an error has stopped the PLC, with 2 for a"
+        " wrong use.",
+    )
+    run.add_argument("program", type=Path, metavar="PROJECT", help="a project folder or an .il file")
+    run.add_argument("--model", choices=list(MODELS), help="EC20 unless the project says otherwise")
+    run.add_argument("--ms", type=positive, metavar="N", help="run N ms of simulated time as fast as it goes")
+    run.add_argument("--until", default="", metavar="TEST", help='run until Y0 is ON, or "D0>=5" holds; at most --ms, or 60000')
+    run.add_argument(
+        "--set", action="append", default=[], metavar="NAME=VALUE", help="a value before the first scan; may stand several times"
+    )
+    run.add_argument("--speed", type=positive, default=1.0, metavar="FACTOR", help="simulated seconds a second in the live view")
+    run.add_argument("--plain", action="store_true", help="a live view without colours, as there is one without rich")
+    run.set_defaults(act=_run)
     tell = commands.add_parser("help", help="tell about an instruction", description="Tell about an instruction, a section, or list all.")
     tell.add_argument("name", nargs="?", default="", metavar="NAME", help="an instruction (ADD) or a section of the manual (6.3)")
     tell.set_defaults(act=_help)
@@ -71,12 +94,49 @@ def _check(options: argparse.Namespace) -> int:
     try:
         program = compile_program(options.program, options.model)
     except ProgramError as error:
-        for problem in error.problems:
-            print(problem)
-        count = len(error.problems)
-        print(f"{count} error{'s' if count != 1 else ''}")
-        return 1
+        return _told(error)
     print(f"{program.model.name}: {program.steps} of {program.model.limits['steps']} steps, no errors")
+    return 0
+
+
+def _told(error: ProgramError) -> int:
+    for problem in error.problems:
+        print(problem)
+    count = len(error.problems)
+    print(f"{count} error{'s' if count != 1 else ''}")
+    return 1
+
+
+def positive(text: str) -> float:
+    number = float(text)
+    if not 0 < number < float("inf"):
+        raise ValueError(text)
+    return number
+
+
+def _run(options: argparse.Namespace) -> int:
+    try:
+        project = Project.of(options.program)
+        plc = Plc(options.model or project.model or "EC20")
+        plc.load(project)
+    except ProgramError as error:
+        return _told(error)
+    session = Session(plc, name=project.name, speed=options.speed)
+    plc.run()
+    for text in options.set:
+        session.set(*terminal.assign(plc, text))
+    if options.ms or options.until:
+        reached = terminal.headless(session, options.ms or 60_000, options.until)
+        print(terminal.page(session))
+        if not reached:
+            print(f"\n{options.until} did not come true")
+        return 0 if reached and not plc.system_error else 1
+    if not sys.stdin.isatty():
+        raise EcsimError("there is no terminal for a live view; give --ms or --until")
+    try:
+        terminal.live(session, options.plain)
+    except KeyboardInterrupt:
+        return 130
     return 0
 
 

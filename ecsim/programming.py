@@ -4,7 +4,6 @@ import copy
 import threading
 from collections.abc import Callable
 from dataclasses import replace
-from functools import wraps
 from pathlib import Path
 from typing import Any
 
@@ -16,20 +15,10 @@ from .errors import EcsimError
 from .monitor import Monitor
 from .project import Project, uploaded
 from .protection import KINDS, Protection
+from .states import alone
 from .system import SystemBlock
 
 LARGEST_READING = 500  # D registers (2.4.7)
-
-
-def alone(method: Callable) -> Callable:
-    """Let a method of Plc wait until no other thread is in the middle of a scan or a change."""
-
-    @wraps(method)
-    def waiting(self, *arguments, **named):
-        with self.lock:
-            return method(self, *arguments, **named)
-
-    return waiting
 
 
 class Programming:

@@ -19,15 +19,15 @@ FLOORS = (
     ("assembler", "project", "protection", "system"),
     ("engines", "editing", "states"),
     ("plc", "programming", "monitor"),
-    ("views", "record", "history", "modbus", "verify", "scenario", "help"),
+    ("views", "record", "history", "network", "modbus", "verify", "scenario", "help"),
     ("session",),
     ("grading",),
-    ("cli", "__init__", "__main__"),
+    ("cli", "terminal", "__init__", "__main__"),
 )
 FLOOR_OF = {module: floor for floor, modules in enumerate(FLOORS) for module in modules}
 
 # ecsim is standard library alone, but for these parts of it.
-ALLOWED = {"record": {"numpy", "matplotlib"}, "history": {"numpy"}, "modbus": {"pymodbus"}, "project": {"tomlkit"}}
+ALLOWED = {"record": {"numpy", "matplotlib"}, "history": {"numpy"}, "modbus": {"pymodbus"}, "project": {"tomlkit"}, "terminal": {"rich"}}
 WALL_CLOCK = "time"  # only session reads it
 
 # folder -> import name; neither may know the other's insides
