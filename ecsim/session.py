@@ -333,6 +333,14 @@ class Session:
         self.plc._check_write(device, value)
         self.post(lambda plc: plc.__setitem__(device, value))
 
+    def receive(self, name: str, first: int, values: list) -> None:
+        """Write devices as `Memory.receive` does, between two scans; a step back repeats it. It is for communication partners, who hold the Plc's lock."""
+        receive = self.plc.memory.receive
+        self.history.overwrite(self.plc.scans, (name, first, len(values)), lambda: receive(name, first, values))
+        receive(name, first, values)
+        if self.state != "running":
+            self._asked = True  # observers see it soon, however many writes come
+
     def edit(self, program: Any) -> None:
         """Change the program in RUN before the next scan, as `Plc.edit` does; what that would refuse is refused here, and a step back stays possible."""
         with self._lock:
