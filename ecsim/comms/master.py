@@ -93,7 +93,7 @@ class Master(Protocol):
             self.deadline = now + 1000 * self.port.register("timeout")
 
     def character(self, byte: int, wrong: bool, now: int) -> None:
-        if self.deadline is None:
+        if self.deadline is None or self.port.deaf(now):
             return
         heard = self.receiver.hear(byte, now, wrong)
         if heard is not None:

@@ -26,7 +26,7 @@ class SlaveStation(Protocol):
         return None if self.receiver.due is None else ceil(self.receiver.due)
 
     def character(self, byte: int, wrong: bool, now: int) -> None:
-        if self.port.sending:
+        if self.port.deaf(now):
             return
         heard = self.receiver.hear(byte, now, wrong)
         if heard is not None:

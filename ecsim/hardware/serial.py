@@ -136,6 +136,7 @@ class Port(Unit, End):
     """
 
     in_stop = True
+    network: Any = None  # the network that the PLC belongs to
 
     def __init__(
         self,

@@ -94,6 +94,10 @@ class End:
         """When all that was sent will have gone out."""
         return self.began + self.framing.after(len(self.text))
 
+    def deaf(self, now: int) -> bool:
+        """Whether the character that ends now began while this end was sending: on two wires nobody hears it then."""
+        return now - self.framing.after(1) < self.last_due
+
     def send(self, text: bytes, now: int) -> None:
         """Begin to send; what was being sent before is broken off."""
         self.text, self.began, self.done, self.clash = bytes(text), now, 0, False
@@ -231,7 +235,7 @@ class Wire:
         end.wire = self
         self.ends.append(end)
         if self.driver is None and not isinstance(end, Station):
-            self.driver = end
+            self.driver = end.network or end
         if self.driver is not None:
             for station in self.stations:
                 station.moved = max(station.moved, self.driver.wire_time())
