@@ -1,8 +1,10 @@
-"""The command `ecsim`: run and check programs, run conformance cases, tell about instructions."""
+"""The command `ecsim`: run, check and serve programs, run conformance cases, tell about instructions."""
 
 import argparse
 import json
+import signal
 import sys
+import threading
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -11,6 +13,7 @@ from . import __version__, terminal
 from . import compile as compile_program
 from .errors import EcsimError, ProgramError
 from .help import help as help_on
+from .modbus import serve
 from .models import MODELS
 from .plc import Plc
 from .project import Project
@@ -66,6 +69,23 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--speed", type=positive, default=1.0, metavar="FACTOR", help="simulated seconds a second in the live view")
     run.add_argument("--plain", action="store_true", help="a live view without colours, as there is one without rich")
     run.set_defaults(act=_run)
+    served = commands.add_parser(
+        "serve",
+        help="run a program for Modbus clients",
+        description="Run a program in real time and answer Modbus clients until Ctrl-C.",
+        epilog="Ends with 0, with 2 when the program does not compile or a line cannot be opened.",
+    )
+    served.add_argument("program", type=Path, metavar="PROJECT", help="a project folder or an .il file")
+    served.add_argument("--model", choices=list(MODELS), help="EC20 unless the project says otherwise")
+    served.add_argument("--tcp", type=int, metavar="PORT", help="answer on this TCP port, 0 for any free one")
+    served.add_argument("--rtu", metavar="DEVICE", help="answer on this serial port in RTU mode")
+    served.add_argument("--ascii", metavar="DEVICE", help="answer on this serial port in ASCII mode")
+    served.add_argument("--host", default="127.0.0.1", help="the address to listen at; this machine alone unless told otherwise")
+    served.add_argument("--station", type=int, default=1, help="1 to 31")
+    served.add_argument("--baud", type=int, default=19200, help="of the serial ports")
+    served.add_argument("--parity", default="even", help="none, odd or even")
+    served.add_argument("--speed", type=float, default=1.0, metavar="FACTOR", help="simulated seconds a second")
+    served.set_defaults(act=_serve)
     tell = commands.add_parser("help", help="tell about an instruction", description="Tell about an instruction, a section, or list all.")
     tell.add_argument("name", nargs="?", default="", metavar="NAME", help="an instruction (ADD) or a section of the manual (6.3)")
     tell.set_defaults(act=_help)
@@ -137,6 +157,27 @@ def _run(options: argparse.Namespace) -> int:
         terminal.live(session, options.plain)
     except KeyboardInterrupt:
         return 130
+    return 0
+
+
+def _serve(options: argparse.Namespace) -> int:
+    project = Project.of(options.program)
+    plc = Plc(options.model or project.model or "EC20")
+    plc.load(project)
+    plc.run()
+    session = Session(plc, name=project.name, speed=options.speed)
+    ended = threading.Event()
+    signal.signal(signal.SIGTERM, lambda *_: ended.set())
+    lines = {name: getattr(options, name) for name in ("tcp", "rtu", "ascii", "host", "station", "baud", "parity")}
+    with serve(session, **lines) as server:
+        session.start()
+        print(f"{server}; Ctrl-C ends it", flush=True)
+        try:
+            while session.state != "failed" and not ended.wait(0.5):
+                pass
+        except KeyboardInterrupt:
+            print()
+    session.stop()
     return 0
 
 
