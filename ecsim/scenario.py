@@ -1,8 +1,8 @@
 """Scenarios: steps of set, run and expect. One form for conformance cases, exercises and demonstrations."""
 
 import json
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -18,19 +18,9 @@ from .system import SystemBlock
 from .values import REAL
 
 REAL_TOLERANCE = 1e-5
-_SYSTEM_KEYS = {
-    "retain",
-    "hold_values",
-    "data_block_valid",
-    "stop_outputs",
-    "stop_output_table",
-    "watchdog_ms",
-    "constant_scan_ms",
-    "input_filter_ms",
-    "port0",
-    "port1",
-}
-_STEP_KEYS = {"set", "pulses", "quadrature", "serial", "scans", "ms", "expect", "expect_range", "error", "action", "note"}
+_SYSTEM_KEYS = {field.name for field in fields(SystemBlock)} - {"data_block"}  # which stands beside it
+_STEP_KEYS = {"set", "pulses", "quadrature", "serial", "scans", "ms", "expect", "expect_range", "error", "action", "note",
+              "force", "unforce", "edit", "load", "refused"}  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,12 +62,18 @@ def same(value: int | float, expected: int | float, real: bool) -> bool:
 
 
 def run_steps(plc: Plc, steps: list[dict[str, Any]]) -> Iterator[Mismatch]:
-    """Carry out steps on a Plc, yielding every expectation that fails. In each: action, set, the run, then expect."""
+    """Carry out steps on a Plc, yielding every expectation that fails.
+
+    In each: action, load or edit (a program's text), unforce, force, set, the run, then expect. With `refused` what stands before set
+    must be refused with that in the message.
+    """
     for number, step in enumerate(steps, 1):
         unknown = set(step) - _STEP_KEYS
         if unknown:
             raise EcsimError(f"step {number}: the key {min(unknown)!r} is not known; known are {', '.join(sorted(_STEP_KEYS))}")
-        _act(plc, step.get("action"), number)
+        refusal = _act(plc, step, number)
+        if ("refused" in step) != bool(refusal) or step.get("refused", "") not in refusal:
+            yield Mismatch(number, "the refusal", repr(refusal), repr(step.get("refused", "")))
         plc.set(step.get("set", {}))
         _signals(plc, step)
         talks = [(talk, _partner(plc, talk)) for talk in step.get("serial", [])]
@@ -146,11 +142,32 @@ def _partner(plc: Plc, talk: dict[str, Any]) -> Partner:
     return partner
 
 
-def _act(plc: Plc, action: str | None, number: int) -> None:
-    actions = {None: lambda: None, "run": plc.run, "stop": plc.stop, "power_cycle": plc.power_cycle}
-    if action not in actions:
-        raise EcsimError(f"step {number}: there is no action {action!r}; known are run, stop, power_cycle")
-    actions[action]()
+_ACTIONS: dict[str, Callable[[Plc], Any]] = {
+    "run": Plc.run, "stop": Plc.stop, "power_cycle": Plc.power_cycle, "format": Plc.format,
+    **{f"clear {what}": lambda plc, what=what: plc.clear(what) for what in ("devices", "program", "data block")},
+}  # fmt: skip
+
+
+def _act(plc: Plc, step: dict[str, Any], number: int) -> str:
+    """What is done to the PLC before a step runs; why it was refused, "" when it was not."""
+    action = step.get("action")
+    if action is not None and action not in _ACTIONS:
+        raise EcsimError(f"step {number}: there is no action {action!r}; known are {', '.join(_ACTIONS)}")
+    try:
+        if action is not None:
+            _ACTIONS[action](plc)
+        for key, change in (("load", plc.load), ("edit", plc.edit)):
+            if key in step:
+                change(step[key])
+        for name in step.get("unforce", []):
+            plc.unforce(name)
+        for name, value in step.get("force", {}).items():
+            plc.force(name, value)
+    except EcsimError as error:
+        if "refused" not in step:
+            raise
+        return str(error)
+    return ""
 
 
 def run_case(case: dict[str, Any], model: str, tracing: bool = False, stepping: bool = False) -> Verdict:
@@ -197,6 +214,9 @@ def _system(case: dict[str, Any], model: str) -> SystemBlock:
             role = given[name].get("role")
             protocol = given[name].get("protocol", "none") + (f" {role}" if role else "")
             given[name] = PortSettings(**{key: value for key, value in given[name].items() if key != "role"} | {"protocol": protocol})
+    for name in ("interrupt_priority", "modules"):
+        if name in given:  # JSON has no numbers for keys
+            given[name] = {int(number): value for number, value in given[name].items()}
     filter_ms = given.pop("input_filter_ms", 0)  # ideal inputs until the program executes REFF
     return SystemBlock(**given, input_filter_ms=filter_ms, data_block=case.get("data_block", {}))
 

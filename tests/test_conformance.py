@@ -21,7 +21,7 @@ MNEMONICS = {row["mnemonic"].split()[0] for row in FACTS}  # "SET Sxx" is a SET
 WAITING = MNEMONICS - set(TABLE)
 
 CASE_KEYS = set("id section mnemonic models il scan_ms steps compile_error source confidence note system_block data_block modules".split())
-STEP_KEYS = set("set scans ms expect expect_range error action note pulses quadrature serial".split())
+STEP_KEYS = set("set scans ms expect expect_range error action note pulses quadrature serial force unforce edit load refused".split())
 
 
 @cache
@@ -108,6 +108,9 @@ def test_a_wrong_value_is_told_with_step_device_value_and_expectation(tracing):
         ({"il": "LD SM0\nADD D0", "steps": []}, "ADD takes 3 operands"),
         ({"steps": [{"scan": 1}]}, "the key 'scan' is not known"),
         ({"steps": [{"action": "leap"}]}, "there is no action 'leap'"),
+        ({"steps": [{"action": "stop", "refused": "in RUN"}]}, "step 1: the refusal is '', expected 'in RUN'"),
+        ({"steps": [{"action": "format", "refused": "the lock"}]}, "can be cleared in STOP only"),
+        ({"steps": [{"action": "format"}]}, "can be cleared in STOP only"),
         ({"steps": [{"scans": 1, "expect": {"D9000": 1}}]}, "EC20 has no D9000"),
         ({"steps": [], "system_block": {"hold": 1}}, "the system block's key 'hold' is not known"),
     ],
