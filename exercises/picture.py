@@ -1,7 +1,7 @@
 """A machine's picture: one SVG drawn at rest and a table from the plant's state to what changes in it.
 
 In the SVG a part that travels carries `data-move="dx dy"`, one that turns `data-turn="cx cy"`; the table says how
-far. What lights up has a class, and gets the class `on` beside it.
+far. What lights up has a class, and gets the class `on` beside it. The classes of all machines are in machine.css.
 """
 
 import re
@@ -11,6 +11,7 @@ from pathlib import Path
 
 from .plant import Moment
 
+STYLE = Path(__file__).with_name("machine.css").read_text(encoding="utf-8")
 REFERENCE = re.compile(r'(\bid="|url\(#|href="#)')
 
 
@@ -32,7 +33,8 @@ class Picture:
         texts: Mapping[str, Callable[[Moment], str]],
         free: Callable[[Moment], dict[str, str]] = lambda moment: {},
     ):
-        self._text = file.read_text(encoding="utf-8")
+        opening, rest = file.read_text(encoding="utf-8").split(">", 1)
+        self._text = f"{opening}>\n<style>\n{STYLE}</style>{rest}"
         parts = {part.get("id"): part for part in xml.fromstring(self._text).iter() if part.get("id")}
         self._moves = [(part, place, *map(float, parts[part].get("data-move").split())) for part, place in places.items()]
         self._turns = [(part, degrees, parts[part].get("data-turn")) for part, degrees in turns.items()]

@@ -1,7 +1,9 @@
-"""What all plants share: the names of their points, what a plant can do, and the moment a picture is drawn from."""
+"""What all plants share: the names of their points, what a plant can do, its faults, and the moment a picture is drawn from."""
 
 from collections.abc import Mapping
-from typing import NamedTuple, Protocol
+from typing import ClassVar, NamedTuple, Protocol
+
+from ecsim import EcsimError
 
 
 class Point(NamedTuple):
@@ -18,6 +20,23 @@ class Plant(Protocol):
 
     def step(self, seconds: float, outputs: Mapping[str, int]) -> dict[str, int]:
         """Let `seconds` pass under these outputs (device -> 0 or 1) and return what the sensors then say."""
+
+
+class Faulty:
+    """A machine with faults that can be switched in. Sensors that stick or bounce are the wiring's affair and not among them."""
+
+    FAULTS: ClassVar[Mapping[str, str]] = {}  # name -> what is then wrong, in words
+    faults: frozenset[str] = frozenset()  # those that are switched in
+
+    def fail(self, fault: str, on: bool = True) -> None:
+        """Switch a fault in, or out again; raises EcsimError for one that the machine does not have."""
+        if fault not in self.FAULTS:
+            raise EcsimError(f"this machine has no fault {fault!r}; it has {', '.join(self.FAULTS) or 'none'}")
+        self.faults = self.faults | {fault} if on else self.faults - {fault}
+        self._settle()
+
+    def _settle(self) -> None:
+        """Take note of a change."""
 
 
 class Moment(NamedTuple):
