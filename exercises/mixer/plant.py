@@ -1,0 +1,227 @@
+"""The mixer: a vessel on load cells, four feeds, a stirrer and a drain, all driven by valves and motors that take their time.
+
+Everything is in kilograms and seconds. The scale and the operator's touch screen speak to the PLC over a line: D0 is the
+weight, D2 and M2 are what the screen says.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from math import inf
+from operator import attrgetter
+from typing import ClassVar, NamedTuple
+
+from ..plant import Faulty, Point
+
+RATES = (8.0, 8.0, 5.0, 4.0)  # kg/s of water, main material, A and B through an open valve
+DRAIN = 12.0  # kg/s
+RUN_UP_S = 2.0  # of the stirrer, and as long to stand still
+TURNS_S = 0.7  # of the stirrer at full speed
+RUNNING = 0.9  # the part of the full speed from which its relay says so
+FULL = 3000.0  # kg: the vessel runs over
+BATCH, REST = 200.0, 20.0  # kg: so much is a batch, and so little of it an empty vessel
+ENDS = (("X0", "X1"), ("X2", "X3"), ("X4", "X5"), ("X6", "X7"), ("X11", "X12"))  # switches of the valves: open, closed
+INSTANT = 1e-9
+
+
+class Incident(NamedTuple):
+    """Something that must not happen to a machine, as a fact: when, in which batch, and what."""
+
+    seconds: float
+    batch: int
+    what: str
+
+
+class Batch(NamedTuple):
+    """A batch as it left the vessel: kg of each that went in, and for how long all of it was stirred and the vessel washed before."""
+
+    water: float
+    main: float
+    a: float
+    b: float
+    stirred_s: float
+    washed_s: float
+
+
+@dataclass
+class Mixer(Faulty):
+    """The machine. `valve_s` is how long each valve travels from closed to open: water, main material, A, B, drain.
+
+    A step of any length gives the same weights: between two changes (a valve at its end, the stirrer at its speed) flows
+    change at a constant rate, and are summed exactly. All fields hold values that a step replaces and never alters.
+    """
+
+    wiring: ClassVar[dict[str, Point]] = {
+        "X0": Point("WaterOpn", "the water valve is open"),
+        "X1": Point("WaterCls", "the water valve is closed"),
+        "X2": Point("MainOpn", "the valve of the main material is open"),
+        "X3": Point("MainCls", "the valve of the main material is closed"),
+        "X4": Point("AOpn", "the valve of additive A is open"),
+        "X5": Point("ACls", "the valve of additive A is closed"),
+        "X6": Point("BOpn", "the valve of additive B is open"),
+        "X7": Point("BCls", "the valve of additive B is closed"),
+        "X10": Point("StirRuns", "the stirrer turns at its speed"),
+        "X11": Point("DrainOpn", "the drain is open"),
+        "X12": Point("DrainCls", "the drain is closed"),
+        "Y0": Point("Water", "water for washing"),
+        "Y1": Point("Main", "main material"),
+        "Y2": Point("AddA", "additive A"),
+        "Y3": Point("AddB", "additive B"),
+        "Y4": Point("Drain", "lets the vessel run out"),
+        "Y5": Point("Stirrer", "contactor of the stirrer"),
+        "D0": Point("Weight", "what is in the vessel, in kg"),
+        "D2": Point("Product", "chosen on the touch screen: 1 is A, 2 is B"),
+        "M2": Point("Batch", "batch start on the touch screen"),
+    }
+
+    FAULTS: ClassVar[dict[str, str]] = {
+        "water sticks": "the water valve does not move",
+        "main sticks": "the valve of the main material does not move",
+        "A sticks": "the valve of additive A does not move",
+        "B sticks": "the valve of additive B does not move",
+        "drain sticks": "the drain does not move",
+        "stirrer trips": "the stirrer gets no power",
+        "scale hangs": "the scale tells its last weight",
+    }
+
+    valve_s: tuple[float, ...] = (1.5, 1.5, 1.0, 1.0, 2.0)
+
+    faults: frozenset[str] = field(default=frozenset(), init=False)
+    seconds: float = field(default=0.0, init=False)
+    weight: float = field(default=0.0, init=False)
+    places: tuple[float, ...] = field(default=(0.0,) * 5, init=False)  # of the valves: 0 closed, 1 open
+    speed: float = field(default=0.0, init=False)  # of the stirrer, part of the full one
+    turns: float = field(default=0.0, init=False)
+    dosed: tuple[float, ...] = field(default=(0.0,) * 4, init=False)  # what went in since the vessel was empty
+    stirred_s: float = field(default=0.0, init=False)  # how long the stirrer turned since the last of it went in
+    washed_s: float = field(default=0.0, init=False)  # how long water ran through the vessel since the last batch
+    batches: tuple[Batch, ...] = field(default=(), init=False)
+    spilt: float = field(default=0.0, init=False)  # kg that ran over
+    incidents: tuple[Incident, ...] = field(default=(), init=False)
+
+    _outputs: tuple[int, ...] = field(default=(0,) * 6, init=False, repr=False)
+    _rates: tuple[float, ...] = field(default=(0.0,) * 6, init=False, repr=False)  # of valves and stirrer, a second
+    _holds_batch: bool = field(default=False, init=False, repr=False)
+    _moves: bool = field(default=False, init=False, repr=False)  # whether a valve does
+    _flows: tuple[float, ...] = field(default=(0.0,) * 5, init=False, repr=False)  # kg/s of the feeds and the drain
+    _bends: tuple[float, ...] = field(default=(0.0,) * 5, init=False, repr=False)  # and how they change, kg/s²
+    _steady_s: float = field(default=0.0, init=False, repr=False)
+    _sensors: dict[str, int] = field(default_factory=dict, init=False, repr=False)
+
+    def __post_init__(self):
+        if len(self.valve_s) != 5 or min(self.valve_s) <= 0:
+            raise ValueError(f"valve_s: five times above 0 s are needed, not {self.valve_s}")
+        self._settle()
+
+    @property
+    def finished(self) -> int:
+        """How many batches have left."""
+        return len(self.batches)
+
+    def step(self, seconds: float, outputs: Mapping[str, int]) -> dict[str, int]:
+        """Let `seconds` pass under the outputs Y0 to Y5; returns the switches X0 to X12 and the weight D0 in whole kg.
+
+        What the touch screen says, D2 and M2, is in the operator's hand.
+        """
+        now = (outputs["Y0"], outputs["Y1"], outputs["Y2"], outputs["Y3"], outputs["Y4"], outputs["Y5"])
+        if now != self._outputs:
+            self._outputs = now
+            self._settle()
+        while seconds > self._steady_s - INSTANT:
+            self._move(self._steady_s)
+            seconds = max(0.0, seconds - self._steady_s)
+            self._settle()
+        self._move(seconds)
+        self._steady_s -= seconds
+        weight = int(self.weight + 1e-6)
+        if weight != self._sensors["D0"] and "scale hangs" not in self.faults:
+            self._sensors = {**self._sensors, "D0": weight}
+        return self._sensors
+
+    def state(self) -> tuple:
+        """Everything the machine is, as a value; `restore` takes it back."""
+        return whole(self)
+
+    def restore(self, state: tuple) -> None:
+        """Make the machine what it was when `state` was taken."""
+        vars(self).update(zip(FIELDS, state, strict=True))
+
+    def _settle(self):
+        """Take note of what has just changed: how everything moves from here on, and for how long."""
+        places = tuple(round(place, 9) for place in self.places)
+        self.places, self.speed = places, round(self.speed, 9)
+        rates = []
+        steady = inf
+        faults, travels = self.faults, (*self.valve_s, RUN_UP_S)
+        for fault, place, driven, travel in zip(self.FAULTS, (*places, self.speed), self._outputs, travels, strict=False):
+            if fault in faults:
+                driven = 0 if fault == "stirrer trips" else place
+            rate = 0.0 if place == driven else 1 / travel if driven else -1 / travel
+            rates.append(rate)
+            if rate:
+                steady = min(steady, (1 - place if rate > 0 else place) * travel)
+        self._rates, self._steady_s, self._moves = tuple(rates), steady, any(rates[:5])
+        self._flows = tuple([rate * place for rate, place in zip((*RATES, DRAIN), places, strict=True)])
+        self._bends = tuple([rate * change for rate, change in zip((*RATES, DRAIN), rates, strict=False)])
+        switches = {}
+        for (opened, closed), place, rate in zip(ENDS, places, rates, strict=False):
+            switches[opened], switches[closed] = int(place == 1 and not rate), int(place == 0 and not rate)
+        switches["X10"] = int(self.speed >= RUNNING)
+        weight = self._sensors["D0"] if "scale hangs" in faults else int(self.weight + 1e-6)
+        self._sensors = switches | {"D0": weight}
+
+    def _move(self, seconds):
+        """Let everything go on as it goes."""
+        if not seconds:
+            return
+        self.seconds += seconds
+        if self._moves or any(self._flows):
+            self._flow(seconds)
+        if self.speed or self._rates[5]:
+            self._stir(seconds)
+
+    def _flow(self, seconds):
+        flows, bends = self._flows, self._bends
+        half = seconds * seconds / 2
+        if any(flows[:4]) or any(bends[:4]):
+            added = [flow * seconds + bend * half for flow, bend in zip(flows, bends, strict=True)]
+            self.dosed = tuple([dosed + amount for dosed, amount in zip(self.dosed, added, strict=False)])
+            if added[1] or added[2] or added[3]:
+                self.stirred_s = 0.0
+            if added[0] and (flows[4] or bends[4]):
+                self.washed_s += seconds
+        net, bend = sum(flows[:4]) - flows[4], sum(bends[:4]) - bends[4]
+        total = net * seconds + bend * half
+        turn = -net / bend if bend > 0 else 0.0  # where the weight is least, if it falls and rises again
+        least = net * turn / 2 if 0 < turn < seconds else min(0.0, total)
+        weight = max(self.weight + total, total - least)  # it does not fall below 0
+        if weight > FULL:
+            if not self.spilt:
+                self.incidents += (Incident(round(self.seconds, 3), self.finished + 1, "runs over"),)
+            self.spilt += weight - FULL
+            weight = FULL
+        self.weight = weight or 0.0
+        if self._moves:
+            self.places = tuple([place + rate * seconds for place, rate in zip(self.places, self._rates, strict=False)])
+            self._flows = tuple([flow + bend * seconds for flow, bend in zip(flows, bends, strict=True)])
+        if weight > BATCH:
+            self._holds_batch = True
+        elif weight < REST:
+            if self._holds_batch:
+                self._finish()
+            elif not weight:
+                self.dosed = (0.0,) * 4
+
+    def _stir(self, seconds):
+        rate = self._rates[5]
+        self.turns += (self.speed * seconds + rate * seconds * seconds / 2) / TURNS_S
+        self.speed += rate * seconds
+        self.stirred_s += seconds
+
+    def _finish(self):
+        """The batch has left the vessel."""
+        self.batches += (Batch(*(round(amount, 3) for amount in (*self.dosed, self.stirred_s, self.washed_s))),)
+        self.dosed, self.stirred_s, self.washed_s, self._holds_batch = (0.0,) * 4, 0.0, 0.0, False
+
+
+FIELDS = tuple(part.name for part in fields(Mixer))
+whole = attrgetter(*FIELDS)
