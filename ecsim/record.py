@@ -137,6 +137,7 @@ class Recording:
             for time, later, value, level in zip(times, edges[1:], values, levels[:-1], strict=True):
                 if later - time > ROOM * (end - begin) * (len(str(value)) + 0.5):
                     style = {"ha": "center", "va": "bottom", "fontsize": 8, "color": colour["--ec-active-text"], "clip_on": True}
+                    style["bbox"] = {"facecolor": colour["--ec-paper"], "edgecolor": "none", "pad": 0.4}
                     axes.text((time + later) / 2, level + 0.03, str(value), **style)
 
     def _place(self, name: str) -> int:
@@ -238,7 +239,7 @@ class PulseTrain:
         if axes is None:
             from matplotlib import pyplot
 
-            axes = pyplot.subplots()[1]
+            axes = pyplot.subplots(figsize=(9.5, 2.8), layout="constrained")[1]
         colour = tokens()
         times, hertz = self.frequency
         axes.fill_between(times, hertz, color=colour["--ec-on-soft"], linewidth=0)
@@ -247,6 +248,8 @@ class PulseTrain:
         axes.grid(color=colour["--ec-hair"], linewidth=0.8)
         axes.set_axisbelow(True)
         axes.spines[["top", "right"]].set_visible(False)
+        axes.spines[["left", "bottom"]].set_color(colour["--ec-dead"])
+        axes.tick_params(color=colour["--ec-dead"], labelcolor=colour["--ec-text-2"])
         return axes
 
     def __repr__(self) -> str:

@@ -1,0 +1,43 @@
+"""The lessons' own checks: what they say to the program that stands there, and to one that does what is asked."""
+
+from pathlib import Path
+
+import matplotlib
+import nbformat
+import pytest
+
+matplotlib.use("Agg")
+
+NOTEBOOKS = Path(__file__).resolve().parent.parent / "notebooks"
+ANSWERS = {
+    "12-high-speed-counters": (
+        "filler",
+        "LD SM1\nSET Y10\nLD SM0\nHCNT C236 1000\nDHSCR 330 C236 Y10",
+        "Not yet: the valve closes at 360 ml",
+        "Right: the valve closes at 330 ml",
+    ),
+    "13-interrupts": (
+        "gate",
+        "PROGRAM MAIN\nLD SM1\nSET SM42\nEI\nEND_PROGRAM\nINTERRUPT LEAVES EVENT 12\nLD SM0\nSET Y10\nEND_INTERRUPT",
+        "Not yet: the gate closes 7.7 ms late",
+        "Right: the gate closes in the moment of the edge",
+    ),
+    "14-positioning": (
+        "job",
+        "LD SM1\nMOV 500 SD84\nDMOV 20000 SD85\nMOV 200 SD87\nLD SM0\nDRVA 25000 20000 Y0 Y4",
+        "Not yet: the table stands at 25.0 mm",
+        "Right: the table stands at 250 mm in time",
+    ),
+}
+
+
+@pytest.mark.parametrize("lesson", ANSWERS)
+def test_a_lesson_tells_a_right_program_from_a_wrong_one(lesson):
+    name, right, before, after = ANSWERS[lesson]
+    cells = [cell.source for cell in nbformat.read(NOTEBOOKS / f"{lesson}.ipynb", 4).cells if cell.cell_type == "code"]
+    needed = [cells[0], *(cell for cell in cells if "def machine" in cell or cell.startswith(f"{name} = ") or "def check" in cell)]
+    space = {}
+    for cell in needed:
+        exec(cell, space)
+    assert space["check"](space[name]).startswith(before)
+    assert space["check"](right).startswith(after)
