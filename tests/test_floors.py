@@ -19,7 +19,7 @@ FLOORS = (
     ("assembler", "project", "protection", "system"),
     ("engines", "editing", "states"),
     ("plc", "programming", "monitor"),
-    ("views", "record", "history", "network", "modbus", "verify", "scenario", "help"),
+    ("views", "record", "history", "network", "outside", "modbus", "verify", "scenario", "help"),
     ("session",),
     ("grading",),
     ("cli", "terminal", "__init__", "__main__"),

@@ -309,3 +309,32 @@ class Wire:
 
     def __repr__(self) -> str:
         return f"<Wire {self.name!r}: {', '.join(end.name for end in self.ends) or 'nothing'}>"
+
+
+class Outlet(Station):
+    """The end behind which real time begins: what it hears stands in `outbox` for who takes it out, what comes from there `enter`s."""
+
+    def __init__(self, framing: Framing, name: str = "outside"):
+        super().__init__(self, framing, name=name)
+        self.outbox = bytearray()
+
+    def hear(self, message: bytes) -> None:
+        """A message is over; its characters have been passed on."""
+
+    def take(self, byte: int, wrong: bool, at: int) -> None:
+        self.outbox.append(byte)
+
+    def enter(self, octets: bytes, now: int) -> None:
+        """Send what has come from outside, behind what is being sent."""
+        if self.sending:
+            self.text += octets
+        else:
+            self.send(octets, now)
+
+    def state(self) -> None:
+        """Real time does not go back."""
+
+    def restore(self, state: tuple) -> None:
+        """Come back to a moment of simulated time."""
+        if state is not None:
+            super().restore(state)
