@@ -12,7 +12,7 @@ from .devices import Bits, Device
 from .engines import CompiledEngine, SteppingEngine, Trace
 from .engines.access import functions
 from .errors import WATCHDOG, EcsimError
-from .hardware.analog import BaseAnalog
+from .hardware.analog import AnalogPoint, BaseAnalog, analog_point
 from .hardware.clocks import Clocks
 from .hardware.counters import Counters
 from .hardware.eeprom import Eeprom
@@ -445,17 +445,28 @@ class Plc(Programming, States):
     # -- devices ------------------------------------------------------------------------------------------------
 
     def __getitem__(self, name: str) -> int | float:
-        return self.memory.get(*self.memory.parse(name, self._names))
+        point = self.analog_point(name)
+        return self.memory.get(*self.memory.parse(name, self._names)) if point is None else point.get()
+
+    def analog_point(self, name: str) -> AnalogPoint | None:
+        """The analog terminal that a name like "AI0:V" or "AO1.3:mA" stands for, None for all other names."""
+        return analog_point(name, self.analog, self.modules) if str(name)[:2] in ("AI", "AO") else None
 
     def __setitem__(self, name: str, value: Any) -> None:
         device, kind, value = self._check_write(name, value)
-        if device.area == "X":
+        if kind is None:
+            device.put(value)
+        elif device.area == "X":
             self._set_inputs(device, value)
         else:
             self.memory.set(device, kind, value)
 
-    def _check_write(self, name: str, value: Any) -> tuple[Device | Bits, DataType, int | float]:
-        """What a write from outside means; raises EcsimError when it cannot be done."""
+    def _check_write(self, name: str, value: Any) -> tuple[Device | Bits | AnalogPoint, DataType | None, int | float]:
+        """What a write from outside means; raises EcsimError when it cannot be done. An analog terminal has no type."""
+        point = self.analog_point(name)
+        if point is not None:
+            point.check(value)
+            return point, None, value
         device, kind = self.memory.parse(name, self._names)
         if device.area != "X":
             self._need_power()

@@ -15,12 +15,11 @@ from .memory import Memory
 from .models import get_model
 from .plc import Plc
 from .system import SystemBlock
-from .values import REAL
 
 REAL_TOLERANCE = 1e-5
 _SYSTEM_KEYS = {field.name for field in fields(SystemBlock)} - {"data_block"}  # which stands beside it
 _STEP_KEYS = {"set", "pulses", "quadrature", "serial", "scans", "ms", "expect", "expect_range", "error", "action", "note",
-              "force", "unforce", "edit", "load", "refused"}  # fmt: skip
+              "force", "unforce", "edit", "load", "refused", "remove", "insert"}  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +63,7 @@ def same(value: int | float, expected: int | float, real: bool) -> bool:
 def run_steps(plc: Plc, steps: list[dict[str, Any]]) -> Iterator[Mismatch]:
     """Carry out steps on a Plc, yielding every expectation that fails.
 
-    In each: action, load or edit (a program's text), unforce, force, set, the run, then expect. With `refused` what stands before set
+    In each: action, load or edit (a program's text), remove or insert (a special module by place), unforce, force, set, the run, then expect. With `refused` what stands before set
     must be refused with that in the message.
     """
     for number, step in enumerate(steps, 1):
@@ -87,7 +86,7 @@ def run_steps(plc: Plc, steps: list[dict[str, Any]]) -> Iterator[Mismatch]:
                 yield Mismatch(number, f"port {talk['port']}", sent or "nothing", expected or "nothing")
         for name, expected in step.get("expect", {}).items():
             value = plc[name]
-            if not same(value, expected, plc.memory.parse(name, plc._names)[1] is REAL):
+            if not same(value, expected, isinstance(value, float)):
                 yield Mismatch(number, name, value, expected)
         for name, limits in step.get("expect_range", {}).items():
             value = plc[name]
@@ -159,6 +158,10 @@ def _act(plc: Plc, step: dict[str, Any], number: int) -> str:
         for key, change in (("load", plc.load), ("edit", plc.edit)):
             if key in step:
                 change(step[key])
+        if "remove" in step:
+            plc.modules[step["remove"]].remove()
+        if "insert" in step:
+            plc.modules[step["insert"]].insert()
         for name in step.get("unforce", []):
             plc.unforce(name)
         for name, value in step.get("force", {}).items():
@@ -173,6 +176,8 @@ def _act(plc: Plc, step: dict[str, Any], number: int) -> str:
 def run_case(case: dict[str, Any], model: str, tracing: bool = False, stepping: bool = False) -> Verdict:
     """One conformance case on one model, from a cold start; inputs are ideal unless the case says otherwise.
 
+    `io` is what Plc takes under that name; `modules` are special modules with plain buffers, by place.
+
     `tracing` runs it on the stepping engine and records every scan, `stepping` runs it there without recording.
     """
     name = case["id"]
@@ -185,7 +190,7 @@ def run_case(case: dict[str, Any], model: str, tracing: bool = False, stepping: 
     if case.get("compile_error"):
         return Verdict(name, model, reason="the program was accepted, expected a compile error")
     try:
-        plc = Plc(model, scan_ms=case.get("scan_ms", 10), system=_system(case, model))
+        plc = Plc(model, scan_ms=case.get("scan_ms", 10), system=_system(case, model), io=case.get("io"))
         plc.tracing = tracing
         plc.engine = "stepping" if stepping else "compiled"
         for place, buffers in case.get("modules", {}).items():  # special modules by place, with what their buffers hold

@@ -6,15 +6,13 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import takewhile
 from operator import itemgetter
 from typing import Any, Protocol
 
 from .errors import EcsimError
-from .hardware.wire import Outlet
 from .history import History
-from .outside import OutsideLine
 from .plc import Plc
 from .record import Recording
 
@@ -22,7 +20,6 @@ FRAME_S = 1 / 30  # observers are called at most this often
 SLICE_S = 0.02  # at full speed, how long scans run before actions and observers get their turn
 LATE_S = 0.25  # a delay beyond this is given up instead of being made up for
 LOG = 500
-QUIET_S = 0.02  # an operating system hands characters over in lumps; a message has ended when none has come for so long
 
 
 class Plant(Protocol):
@@ -45,16 +42,6 @@ class StepChange:
 
 _sessions: dict[str, "Session"] = {}
 _registry = threading.Lock()
-
-
-@dataclass
-class _Connection:
-    """A port's way to a real line: what has come and is not yet a whole message, and when the last of it came."""
-
-    outlet: Outlet
-    line: OutsideLine
-    heard: bytearray = field(default_factory=bytearray)
-    since: float = 0.0
 
 
 class Session:
@@ -83,7 +70,6 @@ class Session:
         self._thread: threading.Thread | None = None
         self._task: Any = None  # keeps the loop alive where there are no threads
         self._loop: object | None = None  # the loop that may go on; any other one ends at its next turn
-        self._connections: dict[int, _Connection] = {}
         self._asked = False  # observers are to be called by the loop
         self._showing = False
         self._initial = self._take()
@@ -98,7 +84,11 @@ class Session:
         self._program, self._downloads = plc.program, plc.downloads
         self._generation = plc.memory.generation
         wiring = list(self.plant.wiring) if self.plant is not None else []
-        places = [(name, plc.memory.parse(name)[0]) for name in wiring]
+        self._signals = {name: point for name in wiring if (point := plc.analog_point(name)) is not None}
+        self._analog_outputs = [name for name, point in self._signals.items() if point.face.startswith("output")]
+        places = [(name, plc.memory.parse(name)[0]) for name in wiring if name not in self._signals]
+        for _, device in places:
+            plc.modules.check(device.area, range(device.number, device.number + 1))
         outputs = [(name, device.number) for name, device in places if device.area == "Y"]
         self._output_names = [name for name, _ in outputs]
         self._driven = itemgetter(*(number for _, number in outputs), 0) if outputs else lambda image: ()
@@ -119,56 +109,8 @@ class Session:
         plc = self.plc
         if plc.program is not self._program or plc.memory.generation != self._generation:
             self._look()
-        if self._connections:
-            self._listen()
         self.history.tick(plc.scans)
         self._step()
-        for connection in self._connections.values():
-            connection.line.write(connection.outlet.outbox)
-            connection.outlet.outbox.clear()
-
-    def connect(self, port: int, where: str) -> None:
-        """Connect a serial port of the PLC to a real line, in real time: a serial device's path or "tcp://host:port".
-
-        It stays connected until `disconnect` or the end of the session. Raises EcsimError for a line that cannot be opened.
-        """
-        if not isinstance(port, int) or not 0 <= port < len(self.plc.ports):
-            raise EcsimError(f"there is no port {port!r}; the PLC has {', '.join(str(each.number) for each in self.plc.ports)}")
-        if port in self._connections:
-            raise EcsimError(f"port {port} is connected to {self._connections[port].line.where}; disconnect({port}) first")
-        line = OutsideLine(where, self.plc.ports[port].framing)
-        with self._lock:
-            outlet = Outlet(self.plc.ports[port].framing)
-            self.plc.ports[port].connect(outlet)
-            self._connections[port] = _Connection(outlet, line)
-
-    def disconnect(self, port: int) -> None:
-        """Take a port off its real line, and close the line."""
-        with self._lock:
-            connection = self._connections.pop(port, None)
-            if connection is None:
-                raise EcsimError(f"port {port!r} is connected to no line")
-            connection.outlet.wire.leave(connection.outlet)
-            connection.line.close()
-
-    def _listen(self) -> None:
-        """Whole messages of the real lines go to the ports; a step back repeats them as an action."""
-        now = time.perf_counter()
-        for number, connection in self._connections.items():
-            octets = connection.line.read()
-            if octets:
-                connection.heard += octets
-                connection.since = now
-            elif connection.heard and now - connection.since >= QUIET_S:
-                message = bytes(connection.heard)
-                connection.heard.clear()
-
-                def enter(number=number, outlet=connection.outlet, message=message) -> None:
-                    outlet.enter(message, self.plc.ports[number].wire_time())
-                    self.plc.ports[number].stirred()
-
-                self.history.note(self.plc.scans, enter)
-                enter()
 
     def _look(self) -> None:
         """Find things again after another program was loaded (there is no way back across that) or a device was forced."""
@@ -189,12 +131,16 @@ class Session:
                 self._outputs = dict(zip(self._output_names, map(int, driven), strict=False))
             if self._counted:
                 self._outputs = self._outputs | self._new_pulses()
+            if self._analog_outputs:
+                self._outputs = self._outputs | {name: self._signals[name].get() for name in self._analog_outputs}
             sensors = self.plant.step((now - before) / 1e6, self._outputs)
             if sensors != self._last_sensors:
                 self._last_sensors = sensors
                 for name, level in sensors.items():
                     if name in self._inputs:
                         plc.inputs.set(self._inputs[name], level, now)
+                    elif name in self._signals:
+                        self._signals[name].put(level)
                     else:  # a value that comes over a line, as from a scale or a touch screen
                         plc.memory.set(*self._registers[name], level)
         if self._step_values is not None:
@@ -280,8 +226,6 @@ class Session:
         thread, self._thread = self._thread, None
         if thread is not None and thread is not threading.current_thread():
             thread.join(timeout=5)
-        for port in list(self._connections):
-            self.disconnect(port)
         self._show()
 
     def run(self) -> None:
@@ -337,8 +281,6 @@ class Session:
             self._drain()
             self._look()
             done = self.history.go(self.plc.scans - scans, self._step)
-            for connection in self._connections.values():
-                connection.outlet.outbox.clear()  # what is repeated has been said
         self._show()
         return done
 

@@ -3,10 +3,12 @@
 All channels are sampled together every 10 ms of simulated time.
 """
 
+import re
 from collections import deque
 from collections.abc import Callable
 from math import floor, inf, isfinite
 from numbers import Real
+from typing import Any, NamedTuple
 
 from ..errors import EcsimError
 from ..memory import Memory
@@ -95,10 +97,14 @@ class Wires:
         return signal[1] if signal is not None and signal[0] == self.unit else None
 
     def __setitem__(self, channel: int, value: float | None) -> None:
+        self.signals[known_channel(channel, len(self.signals))] = self.fitting(value)
+        self.wired()
+
+    def fitting(self, value: float | None) -> tuple[str, float] | None:
+        """A signal of this kind; raises EcsimError for what is no number."""
         if value is not None and (isinstance(value, bool) or not isinstance(value, Real) or not isfinite(value)):
             raise EcsimError(f"an analog input takes a number of {FACES[self.unit]}, or None for no signal, not {value!r:.40}")
-        self.signals[known_channel(channel, len(self.signals))] = None if value is None else (self.unit, float(value))
-        self.wired()
+        return None if value is None else (self.unit, float(value))
 
     def __len__(self) -> int:
         return len(self.signals)
@@ -112,6 +118,50 @@ def known_channel(channel: int, count: int) -> int:
     if isinstance(channel, bool) or channel not in range(count):
         raise EcsimError(f"there is no channel {channel!r}; there are {count}, counted from 0")
     return channel
+
+
+class AnalogPoint(NamedTuple):
+    """An analog terminal by its name: "AI0:V" is an input of the base unit, "AI1.2:mA" one of special module 1, "AO1.0:V" an output."""
+
+    name: str
+    owner: Any
+    face: str
+    channel: int
+
+    def get(self) -> float | None:
+        """The signal on the terminal in the name's unit; None where an input has none of that kind."""
+        terminals = getattr(self.owner, self.face)
+        return terminals[known_channel(self.channel, len(terminals))]
+
+    def check(self, value: float | None) -> None:
+        """Raise EcsimError unless the signal can be put on this terminal."""
+        terminals = getattr(self.owner, self.face)
+        if not isinstance(terminals, Wires):
+            raise EcsimError(f"{self.name} is an output, which the program sets; signals go to inputs, AI")
+        terminals.fitting(value)
+
+    def put(self, value: float | None) -> None:
+        """Put a signal on an input; raises EcsimError for an output."""
+        self.check(value)
+        getattr(self.owner, self.face)[self.channel] = value
+
+
+_NAME = re.compile(r"A([IO])(?:(\d+)\.)?(\d+):(V|mA|C)")
+
+
+def analog_point(name: str, base: Any, modules: Any) -> AnalogPoint | None:
+    """The analog terminal of that name, None where the name is none of one; raises EcsimError when it is not there."""
+    found = _NAME.fullmatch(name.strip())
+    if found is None:
+        return None
+    sense, place, channel, unit = found.groups()
+    owner = base if place is None else modules[int(place)]
+    face = FACES[unit] if sense == "I" else f"output_{FACES[unit]}"
+    if not hasattr(type(owner), face):
+        raise EcsimError(f"{name}: {owner!r} has no {face.replace('_', ' ')}")
+    point = AnalogPoint(name, owner, face, int(channel))
+    point.get()
+    return point
 
 
 class BaseAnalog(Unit):

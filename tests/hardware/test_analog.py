@@ -392,3 +392,71 @@ def test_a_program_sets_a_module_up_and_reads_it():
     plc.scan(2)
     assert plc["D10"] == 10000
     assert plc.modules[1].output_volts[0] == 10
+
+
+# -- by name ------------------------------------------------------------------------------------------------------
+
+
+def test_terminals_have_names_like_devices(unit):
+    unit.set({"AI0:V": 2.5, "AI1:mA": 4, "M0": 1})
+    unit.scan(2)
+    assert (unit["SD172"], unit["AI0:V"], unit["AI0:mA"], unit["AO0:V"]) == (2500, 2.5, None, 0)
+    plc = ecsim.Plc("EC20", io=[(24, 16), "4AD", "4DA"])
+    plc["AI0.3:mA"] = 12
+    plc.modules[1].write(MEAN + 2, [1500])
+    assert (plc.modules[0].milliamperes[3], plc["AO1.2:V"], plc["AO1.2:mA"]) == (12, 1.5, 0)
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [("AI0:V", "no analog channels"), ("AI1.4:V", "no channel 4"), ("AI0.0:V", "no special module in place 0"), ("AI1.0:C", "no input for degrees"),
+     ("AO1.0:V", "has no outputs"), ("AO0:mA", "no output milliamperes"), ("AI1.0:A", "AI1.0")],
+)  # fmt: skip
+def test_a_name_of_no_terminal_is_refused_and_nothing_is_written(name, words):
+    plc = ecsim.Plc("EC20")
+    plc.modules[1] = "4AD"
+    refused(lambda: plc.set({"D0": 5, name: 1}), words)
+    assert plc["D0"] == 0
+
+
+def test_an_output_cannot_be_written_from_outside(unit):
+    refused(lambda: unit.set({"D0": 3, "AO0:V": 1}), "AO0:V is an output")
+    refused(lambda: unit.__setitem__("AI0:V", "5"), "a number of volts")
+    assert unit["D0"] == 0
+
+
+class Tank:
+    """A level that a pump's speed raises and that a sensor tells in volts: 1 V a second at full speed."""
+
+    wiring = {"AI0.0:V": "level", "AO1.0:V": "speed", "Y0": "valve", "X0": "full"}
+
+    def __init__(self):
+        self.level = 0.0
+
+    def step(self, seconds, outputs):
+        self.level += seconds * outputs["AO1.0:V"] / 10
+        return {"AI0.0:V": self.level, "X0": int(self.level > 1)}
+
+
+def test_a_plant_is_driven_and_measured_in_volts():
+    plc = ecsim.Plc("EC20", input_filter_ms=0, io=[(10, 6), "4AD", "4DA"])
+    plc.load("LD SM1\nMOV 1 D9\nTO 0 8 D9 1\nLD SM0\nFROM 0 0 D0 1\nLD< D0 500\nMOV 10000 D1\nLD>= D0 500\nMOV 0 D1\nLD SM0\nTO 1 0 D1 1")
+    plc.run()
+    session = ecsim.Session(plc, Tank(), name="tank")
+    session.scan(40)
+    assert session.plant.level == pytest.approx(0.4, abs=0.03)
+    assert plc["D0"] == pytest.approx(1000 * session.plant.level, abs=30)
+    session.scan(60)
+    assert 0.5 <= session.plant.level < 0.56
+    before = session.plant.level, plc["D0"]
+    session.back(60)
+    assert session.plant.level < 0.45
+    session.scan(60)
+    assert (session.plant.level, plc["D0"]) == before
+
+
+def test_a_plant_on_a_missing_terminal_is_refused():
+    plc = ecsim.Plc("EC20", io=[(10, 6), "4AD"])
+    tank = Tank()
+    tank.wiring = {"X12": "full"}
+    refused(lambda: ecsim.Session(plc, tank, name="tank"), "X12 has no terminal")
