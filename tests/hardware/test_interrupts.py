@@ -68,7 +68,7 @@ def test_a_step_back_restores_what_waits(engine):
     plc.restore(kept)
     plc.scan(50)
     assert plc.memory.snapshot() == first
-    assert first["D"][:2] == [530 // 9, 1]
+    assert tuple(first["D"][:2]) == (530 // 9, 1)
 
 
 def test_stop_in_a_routine_ends_the_time_of_events():
