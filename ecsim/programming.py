@@ -140,6 +140,7 @@ class Programming:
         begin as in the first scan. What hardware the others held is given back, a timer that none drives any longer stands still, and
         outputs whose coils are gone stay as they are. Raises EcsimError in STOP, and when variables or the set of units differ.
         """
+        files = None if isinstance(program, Program) else dict(Project.of(program).files)
         program = self.check_edit(program)
         former, slots = self.program, self.memory.lists["E"]
         kept, gone = keep_memory(former, program)
@@ -158,7 +159,7 @@ class Programming:
         for number in _driven_timers(former) - _driven_timers(program):
             self.memory.lists["DUE"][number] = 0
             self.timers.watched.pop(number, None)
-        self._files = {"main.il": program.source}
+        self._files = files or {"main.il": program.source}
         return program
 
     def check_edit(self, program: "str | Path | Project | Program") -> Program:

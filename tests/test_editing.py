@@ -130,6 +130,11 @@ def test_what_was_changed_is_uploaded(tmp_path):
     (tmp_path / "main.il").write_text("LD X1\nOUT Y0")
     plc.edit(tmp_path)
     assert plc.upload().files == {"main.il": "LD X1\nOUT Y0"}
+    (tmp_path / "more.il").write_text("// nothing yet\n")
+    plc.edit(tmp_path)
+    assert plc.upload().files == {"main.il": "LD X1\nOUT Y0", "more.il": "// nothing yet\n"}
+    plc.edit("LD X3\nOUT Y0")
+    assert plc.upload().files == {"main.il": "LD X3\nOUT Y0"}
     plc.edit(ecsim.compile("LD X2\nOUT Y0"))
     assert plc.upload().files == {"main.il": "LD X2\nOUT Y0"}
 
