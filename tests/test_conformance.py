@@ -20,8 +20,12 @@ FILES = sorted(CONFORMANCE.glob("*.json"))
 MNEMONICS = {row["mnemonic"].split()[0] for row in FACTS}  # "SET Sxx" is a SET
 WAITING = MNEMONICS - set(TABLE)
 
-CASE_KEYS = set("id section mnemonic models il scan_ms steps compile_error source confidence note system_block data_block modules".split())
-STEP_KEYS = set("set scans ms expect expect_range error action note pulses quadrature serial force unforce edit load refused".split())
+CASE_KEYS = set(
+    "id section mnemonic models il scan_ms steps compile_error source confidence note system_block data_block modules io".split()
+)
+STEP_KEYS = set(
+    "set scans ms expect expect_range error action note pulses quadrature serial force unforce edit load refused remove insert".split()
+)
 
 
 @cache
