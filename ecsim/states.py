@@ -49,6 +49,7 @@ class States:
     faults: Faults
     health: SystemErrors
     supply: Supply
+    power_ups = 0  # how often it has started up since it was made
 
     # -- RUN and STOP -------------------------------------------------------------------------------------------
 
@@ -240,6 +241,7 @@ class States:
 
     def _start_up(self, lost: bool = False) -> None:
         """Power-up or reset; `lost` tells that the memory had no supply."""
+        self.power_ups += 1
         if lost and not self.supply.no_battery:
             for code in (RETAINED, FORCES, INFORMATION):
                 self.health.damage(code)

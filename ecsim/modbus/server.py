@@ -14,6 +14,20 @@ from ..hardware.serial import PortSettings
 from .lines import SerialLine, TcpLine
 
 
+class _Station(Slave):
+    """The slave of a line: silent without power, begun anew with each power-up."""
+
+    def __init__(self, plc: Any, station: int, write: Callable[[str, int, list], None]):
+        super().__init__(plc.memory, station, write)
+        self.plc, self.power_ups = plc, plc.power_ups
+
+    def receive(self, station: int, message: bytes) -> bytes | None:
+        if self.power_ups != self.plc.power_ups:
+            self.power_ups = self.plc.power_ups
+            self.restart()
+        return super().receive(station, message) if self.plc.powered else None
+
+
 class Server:
     """Answers Modbus clients until `stop()`. `lines` says where; `with` stops it at its end."""
 
@@ -40,9 +54,9 @@ class Server:
         if tcp is not None:
             if not _is_loopback(host):
                 warnings.warn(f"Modbus has no password: whoever reaches {host} can write every device", stacklevel=3)
-            openers.append(lambda: TcpLine(host, tcp, Slave(plc.memory, station, write), plc.lock))
+            openers.append(lambda: TcpLine(host, tcp, _Station(plc, station, write), plc.lock))
         for path, each in settings.items():
-            openers.append(lambda path=path, each=each: SerialLine(path, each, Slave(plc.memory, station, write), plc.lock))
+            openers.append(lambda path=path, each=each: SerialLine(path, each, _Station(plc, station, write), plc.lock))
         self.lines: list[TcpLine | SerialLine] = []
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self._loop.run_forever, name="ecsim modbus", daemon=True)

@@ -251,6 +251,21 @@ def test_an_ascii_line_hears_frames_among_noise(plc, cable, far):
         assert server.slaves[0].counts["garbled"] == 2
 
 
+# -- power ---------------------------------------------------------------------------------------------------------
+
+
+def test_without_power_it_says_nothing_and_power_up_begins_anew(plc, server):
+    slave = server.slaves[0]
+    assert slave.receive(1, b"\x08\0\4\0\0") is None
+    assert slave.receive(1, b"\3\0\0\0\1") is None
+    plc.power_cycle()
+    assert slave.receive(1, b"\x08\0\x0b\0\0") == b"\x08\0\x0b\0\1"
+    plc.power_off()
+    assert slave.receive(1, b"\3\0\0\0\1") is None
+    plc.power_on()
+    assert slave.receive(1, b"\3\0\0\0\1") == b"\3\2\0\0"
+
+
 # -- the session ---------------------------------------------------------------------------------------------------
 
 
