@@ -51,7 +51,7 @@ SCENARIOS = (
         seconds=2700,
         choices={
             "product": OneOf(1, 2),
-            "moment": OneOf("AddA or AddB", "Main", "Weight > 1990", "Water", "Stirrer", "Weight > 2400"),
+            "moment": OneOf("Main", "AddA or AddB", "Weight > 1990", "Water", "Stirrer", "Weight > 2400"),
             "after": Between(0.0, 20.0, usual=1.0),
         },
         script=lambda chosen: [
