@@ -183,6 +183,9 @@ class Project:
                 settings = system.modules.setdefault(int(part) if part.isdigit() else part, {})
                 if key:
                     settings[key] = value
+                elif not isinstance(value, dict):
+                    raise EcsimError(f"modules: place {part} is set to {value!r:.40}; write its settings by name")
+                return  # and so is a module: its kind decides
         if model is not None:
             self.check(model)
 

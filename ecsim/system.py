@@ -130,8 +130,8 @@ class SystemBlock:
             if not isinstance(place, int) or not 0 <= place < places:
                 where = f"write a place from 0 to {places - 1}" if places else "set its modules up with TO"
                 raise EcsimError(f"modules names place {place!r}, which the system block of {model.name} has not; {where} (2.2.1)")
-            if not isinstance(settings, dict):
-                raise EcsimError(f"modules: place {place} is set to {settings!r:.40}; write its settings by name")
+            if not isinstance(settings, dict) or not isinstance(settings.get("kind", ""), str):
+                raise EcsimError(f"modules: place {place} is set to {settings!r:.40}; write its settings by name, its kind as text")
             check_settings(model, place, settings)
 
 

@@ -156,6 +156,7 @@ def test_a_closed_unit_is_shown_closed():
     plc = Plc()
     plc.load(project)
     assert (len(ladder(plc.program)), chart(plc.program).steps) == (0, [])
+    assert "Y0" not in ladder(plc.program).svg() + chart(plc.program).svg()
     assert "// closed by a password" in str(listing(plc.program))
     assert "OUT" not in str(listing(plc.program))
     plc.unlock("MAIN", "x1")

@@ -3,6 +3,7 @@
 import builtins
 import os
 import stat
+from pathlib import Path
 
 import pytest
 
@@ -43,6 +44,8 @@ protocol = "freeport"
 baud = 19200
 
 [modules.0]
+kind = "4AD"        # the oven
+channels = [{ mode = 0, mean = "D100" }]
 
 [passwords]
 upload = "Sesam1"
@@ -103,7 +106,7 @@ def test_every_setting_of_a_folder_is_read(press):
         watchdog_ms=300,
         run_input="X7",
         interrupt_priority={26: "high"},
-        modules={0: {}},
+        modules={0: {"kind": "4AD", "channels": [{"mode": 0, "mean": "D100"}]}},
         port1=PortSettings("freeport", baud=19200),
     )
     assert (project.passwords, project.protected) == (Passwords(upload="Sesam1"), {"Add": "geheim"})
@@ -222,7 +225,10 @@ def test_a_folder_with_the_name_of_a_file_is_a_project(tmp_path):
         ("[port1]\nspeed = 9600", 2, "[port1] has no setting 'speed'; known are protocol"),
         ("[port0]\nprotocol = 'modbus master'", 2, "the protocol of port 0 is 'modbus master'; choose "),
         ("model = 'EC20'\n[modules.0]\nmode = 1", 3, "modules names place 0, which the system block of EC20 has not"),
-        ("[modules]\nx = 1", 2, "modules names place 'x'"),
+        ("[modules]\nx = 1", 2, "modules: place x is set to 1; write its settings by name"),
+        ("model = 'EC10'\n[modules]\n0 = 1", 3, "modules: place 0 is set to 1; write its settings by name"),
+        ("model = 'EC10'\n[modules.0]\nkind = 5", 3, "its kind as text"),
+        ("model = 'EC10'\n[modules.0]\nkind = '4AD'\nspeed = 1", 4, "modules: place 0 has no setting 'speed'; known are kind and channels"),
         ("[passwords]\nupload = 'much too long'", 2, "the upload password cannot be 'much too long'; take up to 8 letters and digits"),
         ("[passwords]\nprint = 'x'", 2, "[passwords] has no setting 'print'; known are upload, download, monitor, forbid_upload"),
         ("[protected]\nAdd = ''", 2, "the password of Add cannot be ''; take up to 16 letters and digits"),
@@ -251,7 +257,7 @@ def test_all_that_is_wrong_is_told_together(press):
 
 def test_a_password_for_a_unit_that_there_is_not_is_told(press):
     (press / "plc.toml").write_text(TOML.replace("Add =", "Sub ="))
-    with pytest.raises(ProgramError, match=r"plc\.toml: line 35: the program has no unit 'Sub'; it has MAIN, Add"):
+    with pytest.raises(ProgramError, match=r"plc\.toml: line 37: the program has no unit 'Sub'; it has MAIN, Add"):
         ecsim.compile(press)
 
 
@@ -294,7 +300,7 @@ def test_a_changed_value_keeps_comments_and_order(press):
 def test_a_project_made_from_nothing_is_written_and_read_again(tmp_path):
     system = SystemBlock(
         retain={"D": [(5, 9)]}, data_block={"D0": 1}, stop_output_table={"Y1": 1}, interrupt_priority={0: "high"},
-        input_filter_ms=16, port0=PortSettings("modbus slave", station=4), modules={2: {}, 3: {}}, format_lock=True,
+        input_filter_ms=16, port0=PortSettings("modbus slave", station=4), modules={2: {"kind": "4DA"}, 3: {"kind": "4AD", "channels": [{"mode": 3}, {}, {"samples": 2, "mean": "D5"}]}}, format_lock=True,
     )  # fmt: skip
     project = Project(
         {"main.il": LAMP}, model="EC10", scan_ms=2, system=system, passwords=Passwords(monitor="abc"), protected={"MAIN": "x1"}
@@ -307,9 +313,10 @@ def test_a_project_made_from_nothing_is_written_and_read_again(tmp_path):
 
 def test_a_module_that_is_taken_out_leaves_no_table(press):
     project = Project.read(press)
-    project.system.modules = {1: {}}
+    project.system.modules = {1: {"kind": "4DA"}}
     project.write(press)
-    assert Project.read(press).system.modules == {1: {}}
+    assert Project.read(press).system.modules == {1: {"kind": "4DA"}}
+    assert "[modules.0]" not in (press / "plc.toml").read_text()
 
 
 def test_an_unchanged_project_needs_no_tomlkit_and_a_changed_one_says_that_it_does(press, monkeypatch):
@@ -389,3 +396,18 @@ def test_the_line_ends_of_other_systems_stay(press):
     project.write(press)
     assert (press / "main.il").read_bytes() == b"LD X0\r\nOUT Y0\r\n"
     assert (press / "plc.toml").read_bytes().splitlines() == [b'model = "EC10"', b"scan_ms = 6"]
+
+
+def test_the_example_of_the_documentation_is_a_project(tmp_path):
+    text = (Path(__file__).parent.parent / "docs" / "projects.md").read_text(encoding="utf-8")
+    (tmp_path / "plc.toml").write_text(text.split("```toml\n")[1].split("```")[0])
+    (tmp_path / "main.il").write_text("PROGRAM MAIN\nLD X0\nCALL SBR_1\nEND_PROGRAM\nSUBROUTINE SBR_1\nLD SM0\nINC D0\nEND_SUBROUTINE\n")
+    project = Project.read(tmp_path)
+    assert project.compile().unit("SBR_1").closed
+    assert [line.split(" ")[0] for line in text.split("[system]")[1].split("[retain]")[0].splitlines()[1:-1]] == [
+        "watchdog_ms", "constant_scan_ms", "hold_values", "data_block_valid", "power_loss_ms", "no_battery", "run_input",
+        "interrupt_priority", "format_lock",
+    ]  # fmt: skip
+    usual = SystemBlock()
+    named = project.system.watchdog_ms, project.system.constant_scan_ms, project.system.hold_values, project.system.format_lock
+    assert named == (usual.watchdog_ms, usual.constant_scan_ms, usual.hold_values, usual.format_lock)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 
 from ..assembler.program import Network, Program, Unit
 from ..devices import Bits, Device
@@ -247,7 +248,7 @@ class Sheet:
     def spans(self) -> Iterator[tuple[float, float]]:
         """From where to where the main rails of each unit go."""
         starts = [n for n, strip in enumerate(self.strips) if strip.entry.heading or n == 0]
-        for start, end in zip(starts, [*starts[1:], len(self.strips)], strict=True):
+        for start, end in pairwise([*starts, len(self.strips)]):
             yield self.strips[start].top, self.strips[end - 1].top + self.strips[end - 1].height
 
     @cached_property
