@@ -615,7 +615,7 @@ class Plc(Programming, States):
     def restore(self, snapshot: dict[str, Any]) -> None:
         """Go back to a snapshot, also to what was forced then and to before a change in RUN; raises EcsimError for one of another program."""
         if snapshot["program"] is not self.program:
-            self._return_to(snapshot["program"])
+            self.return_to(snapshot["program"])
         self.memory.hold(snapshot["forced"])
         self.memory.restore(snapshot["memory"])
         for name, state in snapshot["units"].items():

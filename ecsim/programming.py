@@ -182,9 +182,13 @@ class Programming:
             unit.password, unit.opened = unit.password or former.password, former.opened
         return program
 
-    def _return_to(self, program: Program) -> None:
+    def has_been(self, program: Program) -> bool:
+        """Whether the program is the one that was loaded, or what became of it in RUN."""
+        return any(each is program for each in self._line)
+
+    def return_to(self, program: Program) -> None:
         """Run what the program was before a change in RUN, or after it; raises EcsimError for one of another download."""
-        if all(each is not program for each in self._line):
+        if not self.has_been(program):
             raise EcsimError("the snapshot was taken with another program; load that one first")
         slots = self.memory.lists["E"]
         self._install(program, self._engine_for(program, lambda count: slots.__setitem__(slice(None), [False] * count)))

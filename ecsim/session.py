@@ -291,9 +291,12 @@ class Session:
             self.history.clear()
             self._bind()
             snapshot, plant, on, *_ = self._initial
-            if snapshot["program"] is not self.plc.program:
+            program = self.plc.program
+            if not self.plc.has_been(snapshot["program"]):
                 snapshot = self.plc.snapshot()  # the time of another program does not come back
             self._put((snapshot, plant, on, {}, []))
+            if self.plc.program is not program:
+                self.plc.return_to(program)  # what was changed in RUN stays changed
             if self.recording is not None:
                 self.recording.forget(-1)
             self.plc.power_cycle()

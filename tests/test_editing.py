@@ -288,6 +288,17 @@ def test_a_session_goes_back_across_a_change_and_forward_again():
     assert plc["D0"] == 137
 
 
+def test_a_reset_goes_back_in_time_and_leaves_the_program_changed():
+    plc = running("LD SM0\nINC D0")
+    session = Session(plc, name="reset", speed=None)
+    session.scan(5)
+    session.edit("LD SM0\nADD D0 100 D0")
+    session.scan(5)
+    session.reset()
+    session.scan(2)
+    assert (plc.time_us, plc["D0"], str(plc.program.instructions[1])) == (20_000, 200, "ADD D0 100 D0")
+
+
 def test_a_session_goes_on_after_a_change_that_is_refused():
     plc = running(WHOLE)
     session = Session(plc, name="refused", speed=None)
