@@ -12,6 +12,7 @@ from pathlib import Path
 from . import __version__, terminal
 from . import compile as compile_program
 from .errors import EcsimError, ProgramError
+from .grading.command import add_commands
 from .help import help as help_on
 from .modbus import serve
 from .models import MODELS
@@ -89,6 +90,7 @@ def _parser() -> argparse.ArgumentParser:
     tell = commands.add_parser("help", help="tell about an instruction", description="Tell about an instruction, a section, or list all.")
     tell.add_argument("name", nargs="?", default="", metavar="NAME", help="an instruction (ADD) or a section of the manual (6.3)")
     tell.set_defaults(act=_help)
+    add_commands(commands)
     return parser
 
 

@@ -147,7 +147,7 @@ def find_exercise(name: "str | Path | Exercise") -> Exercise:
         return name
     folder = Path(name)
     if not folder.is_dir():
-        own = _own_folder()
+        own = own_folder()
         if own is None or not (own / folder / "__init__.py").is_file() or folder.is_absolute():
             here = ", ".join(exercise_names()) or "none here"
             raise EcsimError(f"there is no exercise {str(name)!r}; give the path of its folder, or a name: {here}")
@@ -161,13 +161,20 @@ def find_exercise(name: "str | Path | Exercise") -> Exercise:
 
 def exercise_names() -> list[str]:
     """The exercises that come with ecsim, by the names that `find_exercise` takes; those within others as "mixer/repair"."""
-    own = _own_folder()
+    own = own_folder()
     if own is None:
         return []
     return sorted(path.parent.relative_to(own).as_posix() for path in own.rglob("rules.py") if (path.parent / "__init__.py").is_file())
 
 
-def _own_folder() -> Path | None:
+def place_of(exercise: Exercise) -> str:
+    """What another process finds an exercise by: its name where it comes with ecsim, else the path of its folder."""
+    own = own_folder()
+    folder = exercise.folder.resolve()
+    return folder.relative_to(own).as_posix() if own is not None and folder.is_relative_to(own) else str(folder)
+
+
+def own_folder() -> Path | None:
     """Where the exercises lie that come with ecsim, if they are installed."""
     spec = importlib.util.find_spec(PACKAGE)
     places = list(spec.submodule_search_locations or []) if spec else []
@@ -182,7 +189,7 @@ def _imported(folder: Path) -> Any:
         inner.insert(0, top.name)
     if not (folder / "__init__.py").is_file():
         raise EcsimError(f"{folder} is no exercise: it has no __init__.py with EXERCISE")
-    if top == _own_folder():
+    if top == own_folder():
         inner[0] = PACKAGE
     else:
         inner[0] = f"exercise_{hashlib.sha256(str(top).encode()).hexdigest()[:8]}_{top.name}"

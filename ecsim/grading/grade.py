@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ..assembler import Program
-from ..errors import EcsimError, ProgramError
+from ..errors import WATCHDOG, EcsimError, ProgramError
 from ..plc import Plc
 from ..project import Project
 from ..session import Session, plant_state, restore_plant
@@ -19,6 +19,7 @@ from .rules import Finding, Rule
 from .run import Run, Scenario, Trace
 
 SHORTENING = 40  # runs at most to find the shortest failing one of all rules together
+PATIENCE = 3  # a program that the watchdog has stopped in so many runs is not tried any further: each costs seconds
 BEHIND_S = 3.0  # so long a run goes on behind its failure, for the chart
 
 
@@ -100,7 +101,8 @@ def grade(
     report.compiled = compiled
     stage = Stage(exercise, compiled)
     tried, broken, report.notes = judge(stage, runs_of(exercise, more, seed))
-    shorten(stage, broken)
+    if not report.notes:
+        shorten(stage, broken)
     for rule in exercise.rules:
         failure = _failure(stage, broken[rule.name]) if rule.name in broken else None
         state = FAILED if failure else PASSED if rule.name in tried else UNTRIED
@@ -120,10 +122,15 @@ def judge(stage: Stage, runs: Iterator[tuple[Scenario, dict[str, Any]]]) -> tupl
     tried: set[str] = set()
     broken: dict[str, Broken] = {}
     notes: dict[str, None] = {}
+    stopped = 0
     for scenario, values in runs:
+        if stopped >= PATIENCE:
+            notes["It was not tried any further."] = None
+            break
         mine = [rule for rule in stage.exercise.rules if rule.applies(scenario.name)]
         trace, plc = stage.run(scenario, values)
         if not plc.running:
+            stopped += plc.system_error == WATCHDOG
             notes.update(dict.fromkeys(f"The PLC went to STOP in the scenario {scenario.name!r}: {error}." for error in plc.errors))
         for rule in mine:
             has_tried, finding = rule.judge(trace)

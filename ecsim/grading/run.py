@@ -86,7 +86,7 @@ class Trace:
         """The changes of one lane: a device, a name of the wiring or a quantity of the plant."""
         lane = self.aliases.get(name, name)
         if lane not in self._lanes:
-            if lane == STEP:
+            if lane == STEP and STEP in self.places:
                 group, named = self.places[STEP][0], self.steps
                 texts = [" ".join(step for step, on in zip(named, row[group], strict=False) if on) for row in self.rows]
                 self._lanes[lane] = compressed(zip(self.scans, texts, strict=True))

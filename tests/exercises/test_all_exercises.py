@@ -6,6 +6,7 @@ import pytest
 
 import ecsim
 from ecsim.grading import exercise_names, find_exercise
+from ecsim.grading.mutation import GOAL, mutate
 
 EXERCISES = exercise_names()
 SOLUTIONS = [(name, solution) for name in EXERCISES for solution in find_exercise(name).solutions]
@@ -76,3 +77,9 @@ class TestExercise:
     def test_a_longer_search_finds_nothing_wrong_with_the_reference(self, name):
         exercise = find_exercise(name)
         assert exercise.grade(exercise.solution, more=12, seed=7).passed
+
+    @pytest.mark.slow
+    def test_the_rules_catch_the_faults(self, name):
+        found = mutate(find_exercise(name), workers=2)
+        assert len(found.caught) >= 20
+        assert found.share >= GOAL, str(found)

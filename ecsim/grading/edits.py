@@ -1,0 +1,120 @@
+"""Single edits of a program's text: what a slip of the hand makes of one line, and what one line would have to be to mend another.
+
+The same edits make the faulty programs that measure an exercise's rules and look for the network of a student's fault.
+"""
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+from ..assembler.reader import Source, Statement, read
+from ..instructions import TABLE
+
+CONTACTS = {"LD": "LDI", "LDI": "LD", "AND": "ANI", "ANI": "AND", "OR": "ORI", "ORI": "OR", "EU": "ED", "ED": "EU"}
+JOINED = {"AND": "OR", "OR": "AND", "ANI": "ORI", "ORI": "ANI", "ANB": "ORB", "ORB": "ANB"}
+COILS = {"OUT": ("SET",), "SET": ("OUT", "RST"), "RST": ("SET",)}
+TIMERS = {"TON": ("TOF", "TONR"), "TOF": ("TON",), "TONR": ("TON",)}
+COMPARISONS = {"=": ("<>", ">="), "<>": ("=",), ">": (">=", "<="), ">=": (">", "<"), "<": ("<=", ">="), "<=": ("<", ">")}
+_COMPARISON = re.compile(r"(LD|AND|OR)([DR]?)(=|<>|>=|<=|>|<)")
+_NUMBER = re.compile(r"-?\d+")
+_DEVICE = re.compile(r"([A-Z]+)(\d+)")
+
+
+@dataclass(frozen=True)
+class Edit:
+    """One line of a program changed: `line` from 1, `old` and `new` code (new is empty for a line left out), and the whole text."""
+
+    line: int
+    old: str
+    new: str
+    text: str
+
+    def __str__(self) -> str:
+        return f"line {self.line}: {self.old} -> {self.new or 'nothing'}"
+
+
+def edits(text: str, inserting: bool = False, devices: Iterable[str] = ()) -> Iterator[Edit]:
+    """Every single edit of a program; `inserting` adds what was forgotten: contacts and coils of the program's bits and of `devices`."""
+    source = read(text)
+    named = _neighbours(source)
+    bits = list(dict.fromkeys([*(other for others in named.values() for other in others), *devices]))
+    for unit in source.units:
+        for statement in unit.statements:
+            old = " ".join((statement.mnemonic, *statement.operands))
+            for new in dict.fromkeys(_changes(statement, named)):
+                if new != old:
+                    yield Edit(statement.line, old, new, _with_line(text, statement.line, new))
+            if inserting:
+                for new in _additions(statement, bits):
+                    yield Edit(statement.line, old, new, _with_line(text, statement.line, new))
+
+
+def _with_line(text: str, number: int, code: str) -> str:
+    """The text with the code of one line exchanged; its comment goes, so that nothing tells."""
+    lines = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    lines[number - 1] = code
+    return "\n".join(lines)
+
+
+def _changes(statement: Statement, named: dict[str, list[str]]) -> Iterator[str]:
+    """What one statement may become."""
+    word, operands = statement.mnemonic.upper(), list(statement.operands)
+    for table in (CONTACTS, JOINED):
+        if word in table:
+            yield " ".join((table[word], *operands))
+    for table in (COILS, TIMERS):
+        for other in table.get(word, ()):
+            yield " ".join((other, *operands))
+    compared = _COMPARISON.fullmatch(word)
+    if compared:
+        for other in COMPARISONS[compared[3]]:
+            yield " ".join((f"{compared[1]}{compared[2]}{other}", *operands))
+    yield ""
+    for place, operand in enumerate(operands):
+        for other in _other(operand, named):
+            yield " ".join((word, *operands[:place], other, *operands[place + 1 :]))
+
+
+def _other(operand: str, named: dict[str, list[str]]) -> list[str]:
+    """What may stand in an operand's place: a number that is a little or much off, or a device of the same kind."""
+    if _NUMBER.fullmatch(operand):
+        number = int(operand)
+        return [str(other) for other in dict.fromkeys((number + 1, number - 1, number * 10, number // 10, number // 2)) if other != number]
+    return named.get(operand.casefold(), [])
+
+
+def _neighbours(source: Source) -> dict[str, list[str]]:
+    """Each device or name of the program -> those of the same area that stand beside it in the order of their numbers."""
+    names = {raw.what.upper(): raw.name for raw in source.globals}
+    written: dict[tuple[str, int], str] = {}
+    for raw in source.globals:
+        found = _DEVICE.fullmatch(raw.what.upper())
+        if found:
+            written[found[1], int(found[2])] = raw.name
+    for unit in source.units:
+        for statement in unit.statements:
+            for operand in statement.operands:
+                found = _DEVICE.fullmatch(operand.upper())
+                if found and found[1] in ("X", "Y", "M", "S", "T", "C", "D"):
+                    written.setdefault((found[1], int(found[2])), names.get(operand.upper(), operand))
+    near: dict[str, list[str]] = {}
+    ordered = sorted(written)
+    for place, (area, number) in enumerate(ordered):
+        beside = [ordered[other] for other in (place - 1, place + 1) if 0 <= other < len(ordered) and ordered[other][0] == area]
+        words = [written[one] for one in beside]
+        for known in {written[area, number].casefold(), f"{area}{number}".casefold()}:
+            near[known] = words
+    return near
+
+
+def _additions(statement: Statement, bits: Sequence[str]) -> Iterator[str]:
+    """A contact more behind this statement, or a coil of a bit more."""
+    word = statement.mnemonic.upper()
+    row = TABLE.get(word)
+    own = " ".join((statement.mnemonic, *statement.operands))
+    if row is not None and row.form == "contact":
+        yield from (f"{own}\n{joint} {bit}" for bit in bits for joint in ("AND", "ANI"))
+        yield f"{own}\nEU"
+        yield f"{own}\nED"
+    elif word in ("OUT", "SET", "RST"):
+        yield from (f"{own}\n{coil} {bit}" for bit in bits for coil in ("RST", "OUT"))
