@@ -313,6 +313,9 @@ def _sentence(text: str) -> str:
     return _upper(text).rstrip(".") + "."
 
 
+_ACTIONS = {"run": "STOP to RUN", "stop": "RUN to STOP", "power_cycle": "power off and on"}
+
+
 def _story(case: dict[str, Any]) -> Iterable[str]:
     """The steps of a case, a line each: what is set, how long it runs, what comes out."""
     if case["models"] != list(BOTH):
@@ -323,9 +326,7 @@ def _story(case: dict[str, Any]) -> Iterable[str]:
         if what in case:
             yield f"{what.replace('_', ' ')}: {_settings(case[what])}"
     for step in case["steps"]:
-        before = (
-            [{"run": "STOP to RUN", "stop": "RUN to STOP", "power_cycle": "power off and on"}[step["action"]]] if "action" in step else []
-        )
+        before = [_ACTIONS.get(step["action"], step["action"].replace("_", " "))] if "action" in step else []
         before += [_settings(step["set"])] if step.get("set") else []
         before += [f"{count} pulse{'s' if count != 1 else ''} on {name}" for name, count in step.get("pulses", {}).items()]
         before += [_phases(**step["quadrature"])] if "quadrature" in step else []

@@ -5,8 +5,11 @@ from collections.abc import Iterable
 from dataclasses import replace
 from datetime import datetime
 from numbers import Integral
+from pathlib import Path
 from typing import Any
 
+from . import saved
+from .assembler import assemble
 from .comms.protocols import PROTOCOLS
 from .devices import Bits, Device
 from .engines import CompiledEngine, SteppingEngine, Trace
@@ -39,7 +42,7 @@ from .system import SystemBlock, within
 from .values import BOOL, DataType
 
 # What changes while a Plc runs and is neither memory nor unit.
-STATE = ("scans", "running", "_switch", "_halted", "_run_level", "_first", "_asked", "_took_ns", "_noted_us")
+STATE = ("scans", "running", "_switch", "_halted", "_run_level", "_first", "_asked", "_took_ns", "_limit_ns", "_noted_us")
 LONGEST_NS = 5_000_000_000  # a program that takes longer is stopped (61) even where WDT or a watchdog of 0 would let it run
 
 
@@ -149,10 +152,7 @@ class Plc(Programming, States):
     def _settle(self, scan_ms: float | None, system: SystemBlock) -> None:
         """Take over the period of a scan and the system block."""
         self.scan_ms, self.system = scan_ms, system
-        self._watchdog_ns = system.watchdog_ms * 1_000_000
         self.supply.loss_ms, self.supply.no_battery = system.power_loss_ms, system.no_battery
-        self.health.happen("system block")
-        self.health.happen("data block")
         self._fixed_us = 0 if scan_ms is None else max(round(scan_ms * 1000), system.constant_scan_ms * 1000)
         self._watchdog_ns = system.watchdog_ms * 1_000_000
         self.inputs.usual_us = round(1000 * (self.model.filter_ms if system.input_filter_ms is None else system.input_filter_ms))
@@ -630,6 +630,43 @@ class Plc(Programming, States):
         trace = snapshot["trace"]
         if trace is not None and SteppingEngine in self._engines:
             self._engines[SteppingEngine].trace = trace
+
+    @alone
+    def save(self, path: str | Path) -> None:
+        """Put the whole PLC into a file, for `Plc.open`: program, system block, devices, clock, hardware, what is forced or damaged.
+
+        The file is replaced as a whole; whatever happens meanwhile, it holds the former state or this one (docs/saving.md).
+        """
+        state = self.snapshot()
+        del state["program"], state["trace"]
+        for place, kind, buffers, _ in state["units"]["modules"]["special"]:
+            self.modules.built(place, kind, buffers)  # refuses one that could not be opened again
+        settings = {"model": self.model.name, "places": saved.places(self.program), "files": list(self._files)}
+        settings |= {name: getattr(self, name) for name in ("scan_ms", "system", "protection", "engine", "tracing")}
+        texts = {name or "main.il": text for name, text in self._files.items()}
+        saved.write(path, texts, {"settings": settings, "state": state})
+
+    @classmethod
+    def open(cls, path: str | Path) -> "Plc":
+        """The PLC that `save` put into a file, in the same state: it goes on as if it had never stopped.
+
+        Raises EcsimError for a file that is missing, damaged or none of ecsim's, and says what is wrong.
+        """
+        with saved.reading(path) as (texts, kept):
+            settings = saved.decode(kept["settings"])
+            plc = cls(settings["model"], settings["scan_ms"], system=settings["system"])
+            files = {name: texts[name or "main.il"] for name in settings["files"]}
+            program = assemble(files, plc.model)
+            saved.put_places(program, settings["places"])
+            plc.load(program)
+            plc._files, plc.protection = files, settings["protection"]
+            state = saved.decode(kept["state"], lambda number: Wired(plc.outputs, number))
+            lengths = {name: len(values) for name, values in plc.memory.lists.items()}
+            if {name: len(values) for name, values in state["memory"].items()} != lengths:
+                raise ValueError("other numbers of devices")
+            plc.restore(state | {"program": plc.program, "trace": None})
+            plc.engine, plc.tracing = settings["engine"], settings["tracing"]
+        return plc
 
     def in_use(self, areas: Iterable[str]) -> list[Device]:
         """The devices of some areas that the program names, in order."""

@@ -42,6 +42,7 @@ class Programming:
         passwords; what it says nothing about stays. Devices keep their values until RUN. A program that does not compile raises
         ProgramError, and everything stays as it is, running if it ran.
         """
+        self._need_power()
         project = None
         if not isinstance(program, Program):
             project = Project.of(program)
@@ -76,6 +77,9 @@ class Programming:
         if system.input_filter_ms is None:
             system.input_filter_ms = self.system.input_filter_ms
         self._settle(scan_ms, system)
+        if project.system is not None:
+            self.health.happen("system block")
+            self.health.happen("data block")
         if project.passwords is not None:
             self.protection.download(replace(project.passwords))
 
@@ -160,6 +164,7 @@ class Programming:
             self.memory.lists["DUE"][number] = 0
             self.timers.watched.pop(number, None)
         self._files = files or {"main.il": program.source}
+        self.health.happen("program")
         return program
 
     def check_edit(self, program: "str | Path | Project | Program") -> Program:
@@ -222,6 +227,7 @@ class Programming:
         self._clear_devices()
 
     def _demand_stop(self, what: str) -> None:
+        self._need_power()
         if self.running:
             raise EcsimError(f"{what} can be cleared in STOP only; stop() the PLC first (2.4.4)")
 
@@ -239,6 +245,7 @@ class Programming:
 
     def _clear_data_block(self) -> None:
         self._settle(self.scan_ms, replace(self.system, data_block={}))
+        self.health.happen("data block")
 
     # -- looking ------------------------------------------------------------------------------------------------
 

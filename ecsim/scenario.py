@@ -19,7 +19,7 @@ from .system import SystemBlock
 REAL_TOLERANCE = 1e-5
 _SYSTEM_KEYS = {field.name for field in fields(SystemBlock)} - {"data_block"}  # which stands beside it
 _STEP_KEYS = {"set", "pulses", "quadrature", "serial", "scans", "ms", "expect", "expect_range", "error", "action", "note",
-              "force", "unforce", "edit", "load", "refused", "remove", "insert"}  # fmt: skip
+              "force", "unforce", "edit", "load", "refused", "remove", "insert", "lamps"}  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,8 +63,10 @@ def same(value: int | float, expected: int | float, real: bool) -> bool:
 def run_steps(plc: Plc, steps: list[dict[str, Any]]) -> Iterator[Mismatch]:
     """Carry out steps on a Plc, yielding every expectation that fails.
 
-    In each: action, load or edit (a program's text), remove or insert (a special module by place), unforce, force, set, the run, then expect. With `refused` what stands before set
-    must be refused with that in the message.
+    In each: action, load or edit (a program's text), remove or insert (a special module by place), unforce, force, set, the run, then
+    expect. With `refused` what stands before set must be refused with that in the message. An action is a word, some with what they are
+    about: "switch TM", "battery absent", "power_cycle 30" (ms without mains), "damage program", "repair clock", "clear devices". `lamps`
+    expects RUN, ERR or BAT to be "off", "on" or "flashing".
     """
     for number, step in enumerate(steps, 1):
         unknown = set(step) - _STEP_KEYS
@@ -92,6 +94,9 @@ def run_steps(plc: Plc, steps: list[dict[str, Any]]) -> Iterator[Mismatch]:
             value = plc[name]
             if not limits["min"] <= value <= limits["max"]:
                 yield Mismatch(number, name, value, f"{limits['min']} to {limits['max']}")
+        for lamp, expected in step.get("lamps", {}).items():
+            if plc.lamps[lamp] != expected:
+                yield Mismatch(number, f"lamp {lamp}", plc.lamps[lamp], expected)
         record = f"{plc.model.special_words}{plc.model.registers['faults']}"
         if "error" in step and plc[record] != step["error"]:
             yield Mismatch(number, record, plc[record], step["error"])
@@ -141,20 +146,24 @@ def _partner(plc: Plc, talk: dict[str, Any]) -> Partner:
     return partner
 
 
-_ACTIONS: dict[str, Callable[[Plc], Any]] = {
-    "run": Plc.run, "stop": Plc.stop, "power_cycle": Plc.power_cycle, "format": Plc.format,
-    **{f"clear {what}": lambda plc, what=what: plc.clear(what) for what in ("devices", "program", "data block")},
+# The first word of an action -> what it does, with what follows or with nothing.
+_ACTIONS: dict[str, Callable[..., Any]] = {
+    "run": Plc.run, "stop": Plc.stop, "reset": Plc.reset, "power_off": Plc.power_off, "power_on": Plc.power_on, "format": Plc.format,
+    "power_cycle": lambda plc, ms=None: plc.power_cycle(None if ms is None else float(ms)),
+    "switch": lambda plc, position: setattr(plc, "switch", position),
+    "battery": lambda plc, state: setattr(plc, "battery", state),
+    "clear": Plc.clear, "damage": Plc.damage, "repair": Plc.repair,
 }  # fmt: skip
 
 
 def _act(plc: Plc, step: dict[str, Any], number: int) -> str:
     """What is done to the PLC before a step runs; why it was refused, "" when it was not."""
-    action = step.get("action")
-    if action is not None and action not in _ACTIONS:
+    action, *about = step.get("action", "").split(" ", 1)
+    if action and action not in _ACTIONS:
         raise EcsimError(f"step {number}: there is no action {action!r}; known are {', '.join(_ACTIONS)}")
     try:
-        if action is not None:
-            _ACTIONS[action](plc)
+        if action:
+            _ACTIONS[action](plc, *about)
         for key, change in (("load", plc.load), ("edit", plc.edit)):
             if key in step:
                 change(step[key])

@@ -14,7 +14,7 @@ from .system import within
 
 SWITCH = ("ON", "TM", "OFF")
 HOUR_US = 3_600_000_000
-RETAINED, FORCES, INFORMATION, TRANSLATION = 43, 44, 45, 60
+EEPROM, RETAINED, FORCES, INFORMATION, TRANSLATION = 24, 43, 44, 45, 60
 
 
 def alone(method: Callable) -> Callable:
@@ -298,6 +298,7 @@ class States:
         Hardware is noticed at once, files and memories when the PLC looks at them: at power-up, most of them at STOP -> RUN too.
         """
         self.health.damage(self._part(part))
+        self.eeprom.sound = EEPROM not in self.health.damaged
         if self.health.stopping:
             self.stop()
         self._rebind()
@@ -310,6 +311,7 @@ class States:
         if "damage" not in row.found:
             raise EcsimError(f"the {part} cannot be repaired: {row.remedy}")
         self.health.repair(code)
+        self.eeprom.sound = EEPROM not in self.health.damaged
 
     @property
     def system_error(self) -> int:

@@ -24,7 +24,7 @@ CASE_KEYS = set(
     "id section mnemonic models il scan_ms steps compile_error source confidence note system_block data_block modules io".split()
 )
 STEP_KEYS = set(
-    "set scans ms expect expect_range error action note pulses quadrature serial force unforce edit load refused remove insert".split()
+    "set scans ms expect expect_range error action note pulses quadrature serial force unforce edit load refused remove insert lamps".split()
 )
 
 
@@ -80,7 +80,9 @@ def test_a_case_has_the_keys_of_the_form_and_expects_something(path):
     wrong = []
     for case in cases(path):
         unknown = set(case) - CASE_KEYS | {key for step in case.get("steps", []) for key in step if key not in STEP_KEYS}
-        expects = case.get("compile_error") or any(step.keys() & {"expect", "expect_range", "error", "serial"} for step in case["steps"])
+        expects = case.get("compile_error") or any(
+            step.keys() & {"expect", "expect_range", "error", "serial", "lamps"} for step in case["steps"]
+        )
         if unknown or not expects:
             wrong.append((case["id"], unknown or "expects nothing"))
     assert wrong == []

@@ -17,7 +17,7 @@ FLOORS = (
     ("memory", "hardware", "comms"),
     ("instructions",),
     ("assembler", "project", "protection", "system"),
-    ("engines", "editing", "states"),
+    ("engines", "editing", "saved", "states"),
     ("plc", "programming", "monitor"),
     ("views", "record", "history", "network", "outside", "modbus", "verify", "scenario", "help"),
     ("session",),

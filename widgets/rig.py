@@ -176,8 +176,8 @@ class Rig:
         return self.plc.system.watchdog_ms
 
     def status(self) -> dict[str, int]:
-        """The three lamps of the unit."""
-        return {"RUN": int(self.plc.running), "ERR": int(bool(self.plc.errors)), "BAT": 0}
+        """The three lamps of the unit: 0 is off, 1 on, 2 flashing."""
+        return {lamp: ("off", "on", "flashing").index(state) for lamp, state in self.plc.lamps.items()}
 
     def run(self) -> dict[str, Any]:
         """The state of the run, which every panel is stamped with."""

@@ -170,7 +170,7 @@ panels.unit = (place, layout, page, view) => {
       const word = cell.dataset.status;
       const on = state[word];
       set(cell, "data-on", on ? (word === "RUN" ? "" : "fault") : null);
-      set(cell, "aria-label", `${word} lamp ${on ? "on" : "off"}`);
+      set(cell, "aria-label", `${word} lamp ${["off", "on", "flashing"][on ?? 0]}`);
     }
     for (const radio of place.querySelectorAll(".knobkey")) {
       const here = (radio.dataset.mode === "RUN") === Boolean(state.RUN);

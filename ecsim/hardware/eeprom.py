@@ -18,12 +18,14 @@ class Eeprom(Unit):
         self.relay = memory.model.relays.get("eeprom idle")
         self.cells: dict[int, int] = {}
         self.due: int | None = None  # when the present write ends
+        self.sound = True  # a broken one takes nothing in
 
     def save(self, first: int, count: int, now: int) -> bool:
         """Begin to write `count` registers from number `first` on; False while another write goes on."""
         if self.due is not None:
             return False
-        self.cells.update(enumerate(self.memory.lists[AREA][first : first + count], first))
+        if self.sound:
+            self.cells.update(enumerate(self.memory.lists[AREA][first : first + count], first))
         self._busy(now + WRITE_US)
         return True
 
@@ -51,8 +53,8 @@ class Eeprom(Unit):
         self._busy(None)
 
     def snapshot(self) -> tuple:
-        return dict(self.cells), self.due
+        return dict(self.cells), self.due, self.sound
 
     def restore(self, snapshot: tuple) -> None:
-        self.cells, self.due = dict(snapshot[0]), snapshot[1]
+        self.cells, self.due, self.sound = dict(snapshot[0]), *snapshot[1:]
         self.wake(self.due is not None)

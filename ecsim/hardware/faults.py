@@ -162,7 +162,7 @@ class SystemErrors(Unit):
             if row.part and (model.name in row.models or (row.relay and row.relay in model.relays))
         }
         self.damaged: set[int] = set()
-        self.present: set[int] = set()
+        self.found: set[int] = set()  # errors of damaged parts that the machine has noticed
 
     @property
     def parts(self) -> dict[str, int]:
@@ -173,21 +173,21 @@ class SystemErrors(Unit):
         """Something took place that finds, clears or repairs: "power-up", "run", "program", "devices", "force" and so on."""
         for code, row in self.rows.items():
             if what in row.found and code in self.damaged:
-                self.present.add(code)
-                if what in row.cleared:  # a loss that is over when it was noticed
+                self.found.add(code)
+                if what in row.cleared and "damage" not in row.found:  # a loss that is over when it was noticed
                     self.damaged.discard(code)
             elif what in row.cleared:
                 if what not in ("power-up", "run", "repair") and "damage" not in row.found:
                     self.damaged.discard(code)  # the part is a new one
                 if code not in self.damaged:
-                    self.present.discard(code)
+                    self.found.discard(code)
         self.show()
 
     def damage(self, code: int) -> None:
         """Damage a part; hardware is noticed at once, files and memories when the machine looks at them next."""
         self.damaged.add(code)
         if "damage" in self.rows[code].found:
-            self.present.add(code)
+            self.found.add(code)
             self.show()
 
     def repair(self, code: int) -> None:
@@ -198,7 +198,7 @@ class SystemErrors(Unit):
     @property
     def codes(self) -> list[int]:
         """The system errors that are present, the gravest first; errors of execution stand in SD20."""
-        rows = [self.rows[code] for code in self.present if self.rows[code].kind == "system"]
+        rows = [self.rows[code] for code in self.found if self.rows[code].kind == "system"]
         return [row.code for row in sorted(rows, key=lambda row: (not row.stops, -LAMPS.index(row.lamp), row.code))]
 
     @property
@@ -222,8 +222,8 @@ class SystemErrors(Unit):
         for relay in {row.relay for row in self.rows.values()} & model.relays.keys():
             relays[model.relays[relay]] = any(self.rows[code].relay == relay for code in codes)
 
-    def snapshot(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
-        return tuple(sorted(self.damaged)), tuple(sorted(self.present))
+    def snapshot(self) -> tuple[tuple[int, ...], ...]:
+        return tuple(tuple(sorted(codes)) for codes in (self.damaged, self.found))
 
-    def restore(self, snapshot: tuple[tuple[int, ...], tuple[int, ...]]) -> None:
-        self.damaged, self.present = map(set, snapshot)
+    def restore(self, snapshot: tuple[tuple[int, ...], ...]) -> None:
+        self.damaged, self.found = map(set, snapshot)

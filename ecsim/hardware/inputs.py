@@ -137,11 +137,12 @@ class Inputs(Unit):
         return fresh
 
     def snapshot(self) -> tuple:
-        return list(self.terminals), dict(self.waiting), dict(self.signals), self.time, self.catching, self.filter_us
+        needs = self.taken, self.unfiltered
+        return list(self.terminals), dict(self.waiting), dict(self.signals), self.time, self.catching, self.filter_us, *needs
 
     def restore(self, snapshot: tuple) -> None:
         self.terminals[:] = snapshot[0]
         self.waiting, self.signals = dict(snapshot[1]), dict(snapshot[2])
-        self.time, self.catching, self.filter_us = snapshot[3:]
+        self.time, self.catching, self.filter_us, self.taken, self.unfiltered = snapshot[3:]
         self.wake(bool(self.signals))
         self.changed = True

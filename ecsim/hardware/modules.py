@@ -642,7 +642,7 @@ class Rack(Unit):
         built = {}
         for place, kind, state, _ in snapshot["special"]:
             module = self.modules.get(place)
-            built[place] = module if module is not None and module.kind == kind else self._built(place, kind, state)
+            built[place] = module if module is not None and module.kind == kind else self.built(place, kind, state)
         points_then = [state for state, _ in snapshot["digital"]]
         if [module.state() for module in self.digital] != points_then:
             self.digital = [DigitalModule(*state) for state in points_then]
@@ -658,7 +658,8 @@ class Rack(Unit):
         self.changed()
         self.time = snapshot["time"]
 
-    def _built(self, place: int, kind: str, state: dict) -> Module:
+    def built(self, place: int, kind: str, state: dict) -> Module:
+        """A new module of a kind; raises EcsimError for one that ecsim does not know."""
         if kind in self.model.module_kinds:
             return AnalogModule(self.model.module_kinds[kind])
         if kind == Module.kind:

@@ -324,6 +324,10 @@ class Wired:
     def __init__(self, outputs: PulseOutputs, number: int):
         self.outputs, self.number = outputs, number
 
+    def link(self) -> int:
+        """What tells this signal from others in a file: its output."""
+        return self.number
+
     def _parts(self, moment: int) -> list[tuple[Segment | Wave, int | None]]:
         """The segments that have a part after a moment, each with the number of its pulses; what is remembered comes first."""
         kept = []
