@@ -3,8 +3,14 @@
 from collections.abc import Callable
 
 from ..hardware.serial import Port, Protocol
+from .ecbus import Ecbus
 from .freeport import Freeport
 from .master import Master
 from .station import SlaveStation
 
-PROTOCOLS: dict[str, Callable[[Port], Protocol]] = {"freeport": Freeport, "modbus master": Master, "modbus slave": SlaveStation}
+PROTOCOLS: dict[str, Callable[[Port], Protocol]] = {
+    "freeport": Freeport,
+    "modbus master": Master,
+    "modbus slave": SlaveStation,
+    "ecbus": Ecbus,
+}

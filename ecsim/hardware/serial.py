@@ -15,6 +15,7 @@ from .wire import End, Framing, Wire
 
 PARITIES = ("none", "odd", "even")
 MODES = ("rtu", "ascii")
+LONGEST_DELAY_MS = 100  # of ECbus
 _FRAMES = {"freeport": (9600, 8, "none", 1), "modbus": (19200, 8, "even", 1), "ecbus": (38400, 8, "even", 1)}  # the usual ones
 
 
@@ -24,7 +25,8 @@ class PortSettings:
 
     `protocol` is "programming", "none", "freeport", "modbus slave", "modbus master" or "ecbus"; where baud rate, data bits, parity
     and stop bits are None, they are the usual ones of the protocol (freeport 9600 8N1, Modbus 19200 8E1, 7E1 in ASCII mode).
-    Characters are numbers from 0 to 255, None for none; a time of 0 ms is not watched.
+    Characters are numbers from 0 to 255, None for none; a time of 0 ms is not watched. On an ECbus station 0 says for all how many
+    stations there can be, the refresh mode, the retries and an additional delay (10.5.4).
     """
 
     protocol: str = "none"
@@ -40,6 +42,9 @@ class PortSettings:
     end_char: int | None = None
     gap_timeout_ms: int = 0
     frame_timeout_ms: int = 0
+    stations: int = 2
+    refresh_mode: int = 5
+    delay_ms: int = 0
 
     @property
     def framing(self) -> Framing:
@@ -80,6 +85,10 @@ class PortSettings:
                 _whole(f"{name} of {where}", getattr(self, name), 0, 255)
         for name in ("gap_timeout_ms", "frame_timeout_ms"):
             _whole(f"{name} of {where}", getattr(self, name), 0, 65535)
+        if self.protocol == "ecbus":
+            _choice(f"refresh_mode of {where}", self.refresh_mode, tuple(model.shared))
+            _whole(f"stations of {where} (refresh mode {self.refresh_mode})", self.stations, 2, model.shared[self.refresh_mode].stations)
+            _whole(f"delay_ms of {where}", self.delay_ms, 0, LONGEST_DELAY_MS)
 
 
 def _choice(what: str, value: Any, choices: tuple) -> None:
@@ -208,7 +217,8 @@ class Port(Unit, End):
         self.put("gap timeout", settings.gap_timeout_ms)
         self.put("frame timeout", settings.frame_timeout_ms)
         self.put("station", settings.station)
-        self.put("timeout", settings.timeout_ms)
+        self.put("timeout", settings.delay_ms if settings.protocol == "ecbus" else settings.timeout_ms)
+        self.put("refresh mode", settings.refresh_mode if settings.protocol == "ecbus" else 0)
         self.put("retries", settings.retries)
 
     # -- the line -----------------------------------------------------------------------------------------------

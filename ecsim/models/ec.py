@@ -114,6 +114,7 @@ EC10 = replace(
     module_kinds=ec_modules.MODULES_EC10,
     **ec_modules.ANALOG_EC10,
     ports=ec_serial.PORTS_EC10,
+    shared=ec_serial.SHARED,
     modbus_modes=("rtu",),  # 10.4.1
     **ec_fast.EC10,
 )  # fmt: skip

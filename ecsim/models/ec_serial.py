@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from .model import PortMap
+from .model import PortMap, SharedArea
 
 SLOW = (38400, 19200, 9600, 4800, 2400, 1200)
 # Protocol -> its baud rates (10.1). 1.3.2 and the special devices give ECbus to EC10 alone.
@@ -54,3 +54,10 @@ RELAYS = {"exchange done": 135, "exchange failed": 136}
 REGISTERS = {"exchange error": 139}
 BUFFERS = {"inverter request": ("D", 7940, 30), "inverter answer": ("D", 7970, 30)}  # appendix 3: area, first, count
 LIMITS = {"exchanges": 128}  # 6.12.2: MODBUS and inverter instructions in a program
+
+# 10.5.3: what the stations of an ECbus share in each refresh mode: one layer, then two layers with half of it each.
+SHARED = {
+    **{mode: SharedArea(stations, 7700, 64, 1400, 512, 140) for mode, stations in enumerate((32, 16, 8, 4, 2), 1)},
+    **{mode: SharedArea(stations, 7700, 32, 1400, 256, 140) for mode, stations in enumerate((16, 8, 4, 2), 6)},
+    **{mode: SharedArea(stations, 7732, 32, 1656, 256, 156) for mode, stations in enumerate((16, 8, 4, 2), 10)},
+}

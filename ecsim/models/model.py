@@ -92,6 +92,28 @@ class ModuleKind:
     output: bool = False
 
 
+@dataclass(frozen=True, slots=True)
+class SharedArea:
+    """What the stations of an ECbus share in one refresh mode: D and M from a number on, evenly divided, and the first error flag."""
+
+    stations: int
+    first_word: int
+    all_words: int
+    first_bit: int
+    all_bits: int
+    first_flag: int
+
+    @property
+    def words(self) -> int:
+        """The registers of one station."""
+        return self.all_words // self.stations
+
+    @property
+    def bits(self) -> int:
+        """The relays of one station."""
+        return self.all_bits // self.stations
+
+
 @dataclass(frozen=True)
 class Model:
     """One PLC model. Meanings ("carry") are keys, devices are values, so that another family is another table."""
@@ -141,6 +163,7 @@ class Model:
     analog_outputs: tuple[AnalogPort, ...] = ()
     analog_base: tuple[int, int] | None = None  # the base unit that has them
     bauds: dict[str, tuple[int, ...]] = field(default_factory=dict)  # protocol -> its baud rates
+    shared: dict[int, SharedArea] = field(default_factory=dict)  # refresh mode of ECbus -> what is shared
     buffers: dict[str, tuple[str, int, int]] = field(default_factory=dict)  # meaning -> area, first and count of what the system uses
     baud_codes: dict[int, int] = field(default_factory=dict)  # baud rate -> what the mode word of a port says for it
 
