@@ -225,14 +225,23 @@ def _system(case: dict[str, Any], model: str) -> SystemBlock:
         }
     for name in ("port0", "port1"):
         if name in given:
-            role = given[name].get("role")
-            protocol = given[name].get("protocol", "none") + (f" {role}" if role else "")
-            given[name] = PortSettings(**{key: value for key, value in given[name].items() if key != "role"} | {"protocol": protocol})
+            given[name] = _port(name, given[name])
     for name in ("interrupt_priority", "modules"):
         if name in given:  # JSON has no numbers for keys
             given[name] = {int(number): value for number, value in given[name].items()}
     filter_ms = given.pop("input_filter_ms", 0)  # ideal inputs until the program executes REFF
     return SystemBlock(**given, input_filter_ms=filter_ms, data_block=case.get("data_block", {}))
+
+
+def _port(name: str, given: dict[str, Any]) -> PortSettings:
+    """The settings of a port; a protocol may be parted into protocol and role, "modbus" and "slave"."""
+    known = {each.name for each in fields(PortSettings)} | {"role"}
+    unknown = set(given) - known
+    if unknown:
+        raise EcsimError(f"{name} has no setting {min(unknown)!r}; it has {', '.join(sorted(known))}")
+    role = given.get("role")
+    protocol = given.get("protocol", "none") + (f" {role}" if role else "")
+    return PortSettings(**{key: value for key, value in given.items() if key != "role"} | {"protocol": protocol})
 
 
 def _named(area: str, bound: str | int) -> str:
