@@ -8,41 +8,11 @@ from typing import TYPE_CHECKING, ClassVar
 
 from .devices import Bits, Device
 from .errors import EcsimError
-from .values import BOOL, REAL, DataType, real_from_words, split
+from .formats import FORMATS, usual
+from .values import DataType
 
 if TYPE_CHECKING:
     from .plc import Plc
-
-
-def _digits(base: int, per_digit: int) -> Callable[[int | float, DataType], str]:
-    mark, spell = {2: ("2#", "b"), 8: ("8#", "o"), 16: ("16#", "X")}[base]
-
-    def text(value: int | float, kind: DataType) -> str:
-        return str(value) if kind is BOOL else f"{mark}{value & (1 << kind.bits) - 1:0{-(-kind.bits // per_digit)}{spell}}"
-
-    return text
-
-
-def _float(value: int | float, kind: DataType) -> str:
-    return f"{value if kind is REAL else real_from_words(*split(value)):.7g}"
-
-
-def _characters(value: int | float, kind: DataType) -> str:
-    """Two characters a register, the one in the low byte first, as ASC stores them (6.5.16)."""
-    words = range(kind.words)[::-1] if kind.words > 1 else (0,)
-    codes = [value >> 16 * word + shift & 0xFF for word in words for shift in (0, 8)]
-    return repr("".join(chr(code) if 32 <= code < 127 else "." for code in codes))
-
-
-# format -> the text of a value, and which types it suits
-FORMATS: dict[str, tuple[Callable[[int | float, DataType], str], Callable[[DataType], bool]]] = {
-    "decimal": (lambda value, kind: f"{value:d}", lambda kind: kind is not REAL),
-    "hex": (_digits(16, 4), lambda kind: kind is not REAL),
-    "binary": (_digits(2, 1), lambda kind: kind is not REAL),
-    "octal": (_digits(8, 3), lambda kind: kind is not REAL),
-    "float": (_float, lambda kind: kind.bits == 32),
-    "text": (_characters, lambda kind: kind is not REAL and kind.bits >= 16),
-}
 
 
 @dataclass
@@ -62,8 +32,8 @@ class Row:
 
     @fmt.setter
     def fmt(self, name: str) -> None:
-        if name not in FORMATS or not FORMATS[name][1](self.type):
-            suits = [each for each, (_, suited) in FORMATS.items() if suited(self.type)]
+        if name not in FORMATS or not FORMATS[name].suits(self.type):
+            suits = [each for each, format_ in FORMATS.items() if format_.suits(self.type)]
             raise EcsimError(f"{self.asked} is {self.type.name} and cannot be shown as {name!r}; choose {', '.join(suits)}")
         self.chosen = name
 
@@ -84,7 +54,7 @@ class Row:
     @property
     def text(self) -> str:
         """The value in the row's format."""
-        return FORMATS[self.fmt][0](self.value, self.type)
+        return FORMATS[self.fmt].text(self.value, self.type)
 
     @property
     def forced(self) -> bool:
@@ -121,7 +91,7 @@ class Monitor:
     def add(self, name: str, fmt: str | None = None) -> Row:
         """One more row."""
         device, kind = self.plc.memory.parse(name, self.plc._names)
-        row = Row(self.plc, name, device, kind, "float" if kind is REAL else "binary" if kind is BOOL else "decimal")
+        row = Row(self.plc, name, device, kind, usual(kind))
         if fmt is not None:
             row.fmt = fmt
         self.rows.append(row)

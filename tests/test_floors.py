@@ -18,7 +18,7 @@ FLOORS = (
     ("instructions",),
     ("assembler", "project", "protection", "system"),
     ("engines", "editing", "saved", "states"),
-    ("plc", "programming", "monitor"),
+    ("plc", "programming", "formats", "monitor"),
     ("views", "record", "history", "network", "outside", "modbus", "verify", "scenario", "help"),
     ("session",),
     ("grading",),
