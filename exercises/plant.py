@@ -39,6 +39,11 @@ class Faulty:
         """Take note of a change."""
 
 
+def towards(place: float, end: float, seconds: float) -> float:
+    """The rate a second at which something goes from its place to an end, when the whole way from 0 to 1 takes so many seconds."""
+    return 0.0 if place == end else 1 / seconds if place < end else -1 / seconds
+
+
 class Moment(NamedTuple):
     """What a machine's picture is drawn from: the plant, and the PLC's terminals (device -> 0 or 1)."""
 

@@ -6,7 +6,7 @@ from math import inf
 from operator import attrgetter
 from typing import ClassVar, NamedTuple
 
-from ..plant import Faulty, Point
+from ..plant import Faulty, Point, towards
 
 CONTACTOR_S = 0.02  # a contactor needs so long to close and to open
 RUN_UP_S, COAST_S, BRAKE_S = 1.5, 4.0, 0.7  # from standstill to speed, back by itself, back against the other direction
@@ -97,7 +97,7 @@ class Motor(Faulty):
         elif self.heat <= 0:
             self.tripped = False
         driven = [self._outputs[0] or ("F welded" in self.faults and self.forward > 0), self._outputs[1]]
-        rates = [_towards(place, int(bool(on)), CONTACTOR_S) for place, on in zip((self.forward, self.reverse), driven, strict=True)]
+        rates = [towards(place, int(bool(on)), CONTACTOR_S) for place, on in zip((self.forward, self.reverse), driven, strict=True)]
         closed = self.forward > 0 and (self.forward == 1 or rates[0] < 0), self.reverse > 0 and (self.reverse == 1 or rates[1] < 0)
         if all(closed) and not self._amiss:
             self.incidents += (Incident(round(self.seconds, 3), "a short circuit between the phases"),)
@@ -109,7 +109,7 @@ class Motor(Faulty):
         elif self.speed == wanted:
             speed = 0.0
         elif not wanted:
-            speed = _towards(self.speed, 0, COAST_S)
+            speed = towards(self.speed, 0, COAST_S)
         else:
             speed = wanted / (BRAKE_S if self.speed * wanted < 0 else RUN_UP_S)
         heat = 1 / TRIP_S if wanted and "jammed" in self.faults else -1 / COOL_S if self.heat > 0 else 0.0
@@ -123,11 +123,6 @@ class Motor(Faulty):
         ends += [(1 - self.heat if heat > 0 else self.heat, heat)]
         ends += [(abs(self.speed) if self.speed * speed < 0 else abs(wanted - self.speed), speed)]
         self._steady_s = min((way / abs(rate) for way, rate in ends if rate), default=inf)
-
-
-def _towards(place, end, seconds):
-    """The rate a second at which a place goes to an end, over its whole way in so many seconds."""
-    return 0.0 if place == end else 1 / seconds if place < end else -1 / seconds
 
 
 FIELDS = tuple(part.name for part in fields(Motor))
