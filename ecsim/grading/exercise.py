@@ -73,6 +73,17 @@ class Exercise:
 
         return grade(self, program, model, more=more, seed=seed)
 
+    def hint(self, report: "Report", attempt: int = 1) -> str:
+        """What to say after the `attempt`-th failure: the steps of hints.md one after the other, then where in the program to look.
+
+        The last takes seconds: it tries every single edit until one mends the program, and names its network. "" for a program that is right.
+        """
+        from .hints import hint
+
+        if report.passed or report.compiled is None or attempt > len(self.hints):
+            return hint(self, report)
+        return self.hints[attempt - 1]
+
     # -- its texts ----------------------------------------------------------------------------------------------
 
     def text(self, file: str) -> str:

@@ -117,6 +117,16 @@ def test_a_hint_names_the_network_and_not_the_line(lamp, program, line):
     assert "X1" not in said
 
 
+def test_hints_come_in_steps_and_then_the_network(lamp, tmp_path):
+    exercise = lamp(FOLLOWS, LOCKED, DARK)
+    (tmp_path / "hints.md").write_text("# Hints\n\n1. What locks it?\n2. Look at\n   the second switch.\n")
+    report = exercise.grade("LD X0\nAND X1\nOUT Y0")
+    said = [exercise.hint(report, attempt) for attempt in (1, 2, 3)]
+    assert said[:2] == ["What locks it?", "Look at the second switch."]
+    assert "lines 1 to 3" in said[2]
+    assert exercise.hint(exercise.grade(exercise.solution)) == ""
+
+
 def test_no_hint_without_a_fault_or_without_a_single_line(lamp):
     exercise = lamp(FOLLOWS, LOCKED, DARK)
     assert hint(exercise, exercise.grade(exercise.solution)) == ""
