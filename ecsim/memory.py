@@ -92,8 +92,8 @@ class Memory:
         kind = TYPES.get(suffix.strip().upper()) if suffix else self._usual_type(device)
         if kind is None:
             raise EcsimError(f"{suffix!r} is no type; use {', '.join(TYPES)}")
-        if kind not in self._types(device):
-            raise EcsimError(f"{text} cannot be had as {kind.name}; it is {', '.join(each.name for each in self._types(device))}")
+        if kind not in self.types(device):
+            raise EcsimError(f"{text} cannot be had as {kind.name}; it is {', '.join(each.name for each in self.types(device))}")
         if device.number >= area.count:
             raise EcsimError(f"{self.model.name} has no {text} ({area.span})")
         length = 4 * device.digits if isinstance(device, Bits) else kind.words if area.kind == "word" else 1
@@ -101,8 +101,8 @@ class Memory:
             raise EcsimError(f"{name} reaches beyond the last {device.area} of {self.model.name} ({area.span})")
         return device, kind
 
-    def _types(self, device: Device | Bits) -> tuple[DataType, ...]:
-        """As what a device can be read and written."""
+    def types(self, device: Device | Bits) -> tuple[DataType, ...]:
+        """As what a device can be read and written, the usual type first."""
         if isinstance(device, Bits):
             return (INT, WORD, DINT, DWORD) if device.digits <= 4 else (DINT, DWORD)
         kind = self.model.areas[device.area].kind
@@ -111,6 +111,13 @@ class Memory:
         if kind == "word":
             return (INT, WORD, DINT, DWORD, REAL)
         return (DINT, DWORD, BOOL) if self._usual_type(device) is DINT else (INT, WORD, BOOL)
+
+    def span(self, device: Device | Bits, kind: DataType) -> tuple[str, range]:
+        """Where a device read as `kind` lies: the name of the list, and the numbers in it."""
+        if isinstance(device, Bits):
+            return device.area, range(device.number, device.number + 4 * device.digits)
+        length = kind.words if self.model.areas[device.area].kind == "word" else 1
+        return self._list(device, kind), range(device.number, device.number + length)
 
     def _usual_type(self, device: Device | Bits) -> DataType:
         if isinstance(device, Bits):
@@ -166,7 +173,7 @@ class Memory:
         try:
             value = index(value)
         except TypeError:
-            hint = f"; for REAL write {device}:REAL" if REAL in self._types(device) else ""
+            hint = f"; for REAL write {device}:REAL" if REAL in self.types(device) else ""
             raise EcsimError(f"{device} takes a whole number, not {value!r:.40}{hint}") from None
         width = min(kind.bits, 4 * device.digits) if isinstance(device, Bits) else kind.bits
         low, high = -(1 << kind.bits - 1) if width == kind.bits else 0, (1 << width) - 1

@@ -59,11 +59,8 @@ class Row:
     @property
     def forced(self) -> bool:
         """Whether one of its bits or registers is forced."""
-        forced = self.plc.memory.forces().get(self.plc.memory._list(self.device, self.type), {})
-        length = 4 * self.device.digits if isinstance(self.device, Bits) else max(1, self.type.words)
-        if not isinstance(self.device, Bits) and self.device.area in ("T", "C"):
-            length = 1
-        return any(number in forced for number in range(self.device.number, self.device.number + length))
+        name, numbers = self.plc.memory.span(self.device, self.type)
+        return not self.plc.memory.forces().get(name, {}).keys().isdisjoint(numbers)
 
     @property
     def cells(self) -> tuple[str, ...]:
