@@ -8,7 +8,7 @@ from typing import ClassVar, NamedTuple
 
 from ..plant import Faulty, Point, towards
 
-CONTACTOR_S = 0.02  # a contactor needs so long to close and to open
+CLOSE_S, OPEN_S = 0.015, 0.025  # a contactor needs so long to close, and to open with its arc
 RUN_UP_S, COAST_S, BRAKE_S = 1.5, 4.0, 0.7  # from standstill to speed, back by itself, back against the other direction
 TRIP_S, COOL_S = 5.0, 30.0  # a motor that cannot turn trips its overload relay; the relay closes again when it is cool
 TURN_S = 0.8  # of the shaft as it is drawn
@@ -97,7 +97,7 @@ class Motor(Faulty):
         elif self.heat <= 0:
             self.tripped = False
         driven = [self._outputs[0] or ("F welded" in self.faults and self.forward > 0), self._outputs[1]]
-        rates = [towards(place, int(bool(on)), CONTACTOR_S) for place, on in zip((self.forward, self.reverse), driven, strict=True)]
+        rates = [towards(place, int(bool(on)), CLOSE_S if on else OPEN_S) for place, on in zip((self.forward, self.reverse), driven, strict=True)]
         closed = self.forward > 0 and (self.forward == 1 or rates[0] < 0), self.reverse > 0 and (self.reverse == 1 or rates[1] < 0)
         if all(closed) and not self._amiss:
             self.incidents += (Incident(round(self.seconds, 3), "a short circuit between the phases"),)

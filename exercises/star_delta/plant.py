@@ -8,7 +8,7 @@ from typing import ClassVar, NamedTuple
 
 from ..plant import Faulty, Point, towards
 
-CONTACTOR_S = 0.02  # a contactor needs so long to close and to open
+CLOSE_S, OPEN_S = 0.015, 0.025  # a contactor needs so long to close, and to open with its arc
 STAR_S, DELTA_S, COAST_S = 4.0, 2.0, 10.0  # from standstill to full speed, and back by itself
 STAR_SPEED = 0.85  # in star it gets no faster
 SLOW = 0.7  # closing delta below this speed asks more of the mains than they give
@@ -95,7 +95,7 @@ class StarDelta(Faulty):
         self.tripped = self.heat >= 1 or (self.tripped and self.heat > 0)
         line, star, delta = self._outputs
         driven = line, star or ("star welded" in self.faults and places[1] > 0), delta
-        rates = [towards(place, int(bool(on)), CONTACTOR_S) for place, on in zip(places, driven, strict=True)]
+        rates = [towards(place, int(bool(on)), CLOSE_S if on else OPEN_S) for place, on in zip(places, driven, strict=True)]
         # a contactor conducts when it has closed, and until it has opened
         closed = tuple(place > 0 and (place == 1 or rate < 0) for place, rate in zip(places, rates, strict=True))
         if closed[1] and closed[2] and not (self._closed[1] and self._closed[2]):

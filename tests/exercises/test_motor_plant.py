@@ -25,10 +25,10 @@ def run(plant, *phases, length=None):
 @pytest.mark.parametrize(("outputs", "sign"), [(F, 1), (R, -1)])
 def test_it_runs_up_and_coasts_down(outputs, sign, length):
     plant = Motor()
-    run(plant, (0.02 + 0.75, outputs), length=length)  # the contactor's 20 ms, then half of 1.5 s
+    run(plant, (0.015 + 0.75, outputs), length=length)  # the contactor's 15 ms, then half of 1.5 s
     assert plant.speed == pytest.approx(sign * 0.5, abs=1e-6)
-    run(plant, (2.0, outputs), (0.02 + 1.0, OFF), length=length)
-    assert plant.speed == pytest.approx(sign * 0.75, abs=0.006)  # 4 s from full speed, the contactor still closed for 20 ms
+    run(plant, (2.0, outputs), (0.015 + 1.0, OFF), length=length)
+    assert plant.speed == pytest.approx(sign * 0.75, abs=0.006)  # 4 s from full speed, the contactor still closed for 25 ms
     run(plant, (4.0, OFF), length=length)
     assert plant.speed == 0
 
@@ -45,8 +45,8 @@ def test_against_the_other_direction_it_stops_sooner():
     plant = Motor()
     run(plant, (3.0, F), (0.1, OFF))
     speed = plant.speed
-    run(plant, (0.02 + 0.35, R))
-    assert plant.speed == pytest.approx(speed - 0.02 / 4 - 0.5, abs=1e-3)  # 0.7 s from full speed
+    run(plant, (0.015 + 0.35, R))
+    assert plant.speed == pytest.approx(speed - 0.015 / 4 - 0.5, abs=1e-3)  # 0.7 s from full speed
     assert plant.incidents == ()
 
 
@@ -62,7 +62,7 @@ def test_both_contactors_closed_are_a_short_circuit_that_ends_it(phases):
 
 def test_a_change_over_that_waits_for_the_contactor_is_none():
     plant = Motor()
-    run(plant, (1.0, F), (0.021, OFF), (1.0, R))
+    run(plant, (1.0, F), (0.011, OFF), (1.0, R))
     assert plant.incidents == ()
 
 
@@ -70,7 +70,7 @@ def test_a_change_over_that_waits_for_the_contactor_is_none():
 def test_a_jammed_motor_trips_its_relay_after_5_s_and_cools_in_30(length):
     plant = Motor()
     plant.fail("jammed")
-    assert run(plant, (0.02 + 4.9, F), length=length) == {"X3": 1}
+    assert run(plant, (0.015 + 4.9, F), length=length) == {"X3": 1}
     assert run(plant, (0.2, F), length=length) == {"X3": 0}
     plant.fail("jammed", on=False)
     assert run(plant, (29.8, OFF), length=length) == {"X3": 0}
@@ -114,4 +114,4 @@ def test_closed_contacts_stand_upright_and_what_runs_is_lit():
     assert {key for key, value in state.items() if value.endswith(" on")} == {
         "X0:class", "X3:class", "Y0:class", "coil-forward:class", "motor:class", "go-forward:class",
     }  # fmt: skip
-    assert state["speed:text"] == "forward, 65% of its speed"
+    assert state["speed:text"] == "forward, 66% of its speed"
