@@ -200,3 +200,216 @@ def test_a_recording_without_an_analyser_is_drawn_too(plc):
     assert axes.get_xlim() == (50, 600)
     assert axes.lines[0].get_xdata().tolist() == [50, 550, 600]
     pyplot.close("all")
+
+
+# -- steps, conditions, moments --------------------------------------------------------------------------------------
+
+
+CHART = """PROGRAM MAIN
+LD SM1
+SET S0
+STL S0
+LD X0
+SET S20
+STL S20
+OUT Y0
+LD X1
+OUT S0
+RET
+LD X0
+EU
+OUT Y1
+LD SM0
+SUB D0 3 D0
+END_PROGRAM"""
+
+
+@pytest.fixture
+def chart():
+    """Two steps, each left by an input; D0 falls by 3 in every scan. X0 in scans 3 and 4, X1 in scan 6."""
+    plc = Plc("EC20", scan_ms=10, input_filter_ms=0)
+    plc.load(CHART)
+    plc.run()
+    recording = Recording(plc, ["X0", "Y1", "S", "D0"])
+    for scan in range(1, 9):
+        plc.set({"X0": int(scan in (3, 4)), "X1": int(scan == 6)})
+        plc.scan()
+        recording.sample()
+    return plc, recording
+
+
+def test_all_steps_are_one_signal(chart):
+    _, recording = chart
+    assert recording.steps == ["S0", "S20"]
+    assert [(time, recording.in_words("S", value)) for time, value in recording.changes("S")] == [
+        (10_000, "S0"),
+        (30_000, "S20"),
+        (60_000, "S0"),
+    ]
+
+
+def test_a_stretch_of_changes_begins_with_the_value_that_holds(chart):
+    _, recording = chart
+    assert recording.changes("X0", 45_000, 80_000) == [(40_000, 1), (50_000, 0)]
+    assert recording.value("X0", 39_999) == 1
+    assert recording.value("X0", 9_999) is None
+
+
+def test_the_next_and_the_last_edge_are_found(chart):
+    _, recording = chart
+    assert recording.edge(30_000, names=["X0"]) == 50_000
+    assert recording.edge(30_000, forward=False, names=["X0"]) is None
+    assert recording.edge(79_000, forward=False, names=["S", "X0"]) == 60_000
+    assert recording.edge(30_000) == 40_000  # D0 changes in every scan
+
+
+@pytest.mark.parametrize(
+    ("condition", "ms"),
+    [
+        ("X0 rises", [30]),
+        ("x0 FALLS", [50]),
+        ("X0 changes", [30, 50]),
+        ("X0", [30]),
+        ("not X0", [50]),
+        ("D0 < -8", [30]),
+        ("D0 = -12 and X0", [40]),
+        ("D0 changes and X0", [30, 40]),
+        ("D0 >= -9 and not Y1", []),
+        ("D0 <> -9", [40]),
+    ],
+)
+def test_moments_are_found_by_a_condition(chart, condition, ms):
+    assert [time / 1000 for time in chart[1].when(condition)] == ms
+
+
+@pytest.mark.parametrize("condition", ["X0 jumps", "X0 or Y1", "", "D0 >", "not D0 > 3", "__import__('os')"])
+def test_what_is_no_condition_is_refused(chart, condition):
+    with pytest.raises(EcsimError, match="is no condition; write X1 rises"):
+        chart[1].when(condition)
+
+
+def test_a_condition_needs_recorded_signals(chart):
+    with pytest.raises(EcsimError, match="M5 is not recorded; recorded are X0, Y1, S, D0"):
+        chart[1].when("X0 and M5")
+
+
+def test_a_signal_is_added_and_removed_while_it_records(chart):
+    plc, recording = chart
+    recording.add("M7")
+    recording.remove("D0")
+    plc["M7"] = 1
+    plc.scan()
+    recording.sample()
+    assert recording.names == ["X0", "Y1", "S", "M7"]
+    assert recording.changes("M7") == [(90_000, 1)]
+    assert recording.value("M7", 80_000) is None
+    assert recording.changes("X0")[1:] == [(30_000, 1), (50_000, 0)]
+    with pytest.raises(EcsimError, match="M7 is recorded already"):
+        recording.add("M7")
+
+
+def test_steps_of_a_program_that_is_loaded_later_are_recorded_too(chart):
+    plc, recording = chart
+    plc.load("LD SM1\nSET S30\nSTL S30\nOUT Y0\nRET")
+    plc.run()
+    plc.scan()
+    recording.sample()
+    assert recording.in_words("S", recording.changes("S")[-1][1]) == "S30"
+
+
+def test_each_moment_has_its_scan_also_when_scans_take_different_times():
+    plc = Plc("EC20", scan_ms=10)
+    recording = Recording(plc, "D0")
+    lasted = [10, 10, 25, 25, 5, 10]
+    for ms in lasted:
+        plc._fixed_us = 1000 * ms
+        plc.scan()
+        recording.sample()
+    ends = [1000 * sum(lasted[: n + 1]) for n in range(len(lasted))]
+    assert [recording.scan_at(time) for time in ends] == [1, 2, 3, 4, 5, 6]
+    assert [recording.scan_at(time - 1) for time in ends[1:]] == [1, 2, 3, 4, 5]
+    recording.forget(ends[3])
+    plc.scan()
+    assert recording.scan_at(ends[2]) == 3
+
+
+# -- files -----------------------------------------------------------------------------------------------------------
+
+
+def read_vcd(text):
+    """A strict reader of value change dumps (IEEE 1364-2005, 18.2): {reference: [(time, value)]} of wires and integers."""
+    head, body = text.split("$enddefinitions $end\n")
+    assert "$timescale 1 us $end" in head
+    assert head.count("$scope module ") == head.count("$upscope $end") == 1
+    references, found, time, dumping = {}, {}, None, False
+    for line in head.splitlines():
+        if line.startswith("$var"):
+            _, sort, size, code, reference, end = line.split(" ")
+            assert (sort, size) in (("wire", "1"), ("integer", "32"))
+            assert end == "$end"
+            assert all("!" <= sign <= "~" for sign in code)
+            assert code not in references
+            references[code] = (reference, sort)
+            found[reference] = []
+    for line in body.splitlines():
+        if line.startswith("#"):
+            assert time is None or int(line[1:]) > time, "times must rise"
+            time = int(line[1:])
+        elif line == "$dumpvars":
+            dumping = True
+        elif line == "$end":
+            assert dumping
+            assert all(found.values()), "all variables are dumped at the beginning"
+            dumping = False
+        else:
+            value, code = line[1:].split(" ") if line[0] == "b" else (line[0], line[1:])
+            reference, sort = references[code]
+            assert (line[0] == "b") == (sort == "integer")
+            assert set(value) <= set("01x")
+            found[reference].append((time, value))
+    assert not dumping
+    return found
+
+
+def test_a_vcd_file_holds_every_change(chart, tmp_path):
+    _, recording = chart
+    recording.add("C0:BOOL")
+    found = read_vcd(recording.save(tmp_path / "all.vcd").read_text())
+    assert found["X0"] == [(10_000, "0"), (30_000, "1"), (50_000, "0")]
+    assert found["Y1"] == [(10_000, "0"), (30_000, "1"), (40_000, "0")]
+    assert found["S0"] == [(10_000, "1"), (30_000, "0"), (60_000, "1")]
+    assert found["S20"] == [(10_000, "0"), (30_000, "1"), (60_000, "0")]
+    assert [int(value, 2) - 2**32 for _, value in found["D0"]] == [-3 * n for n in range(1, 9)]
+    assert found["C0_BOOL"] == [(10_000, "x")]
+
+
+def test_a_csv_file_has_a_row_for_each_change(chart, tmp_path):
+    _, recording = chart
+    lines = recording.save(tmp_path / "all.csv").read_text().splitlines()
+    assert lines[0] == "time_s,scan,X0,Y1,S,D0"
+    assert lines[3] == "0.030000,3,1,1,S20,-9"
+    assert len(lines) == 9
+
+
+def test_a_png_file_is_a_picture(chart, tmp_path):
+    path = chart[1].save(tmp_path / "all.png")
+    height, width, _ = pyplot.imread(path).shape
+    assert (width, height) == (1650, 435)  # 11 in x 2.9 in at 150 dots an inch
+
+
+def test_another_kind_of_file_is_refused(chart, tmp_path):
+    with pytest.raises(EcsimError, match="cannot be written as 'fst'; it can as csv, vcd or png"):
+        chart[1].save(tmp_path / "all.fst")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_diagram_shows_steps_cursors_and_pins(chart):
+    _, recording = chart
+    axes = recording.plot(ms=(10, 1500), cursors=(30, 60))
+    words = [text.get_text() for text in axes.texts]
+    assert "30 ms · 3 scans" in words
+    assert words[-3:-1] == ["A", "B"]
+    assert "S0" in words
+    pins = {each.get_gid(): each.get_offsets().tolist() for each in axes.collections if each.get_gid()}
+    assert pins == {"pins of Y1": [[30, 2.64]]}  # the third row from below, on for one scan
+    pyplot.close("all")
