@@ -6,13 +6,15 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import takewhile
 from operator import itemgetter
 from typing import Any, Protocol
 
 from .errors import EcsimError
+from .hardware.wire import Outlet
 from .history import History
+from .outside import OutsideLine
 from .plc import Plc
 from .record import Recording
 
@@ -20,6 +22,7 @@ FRAME_S = 1 / 30  # observers are called at most this often
 SLICE_S = 0.02  # at full speed, how long scans run before actions and observers get their turn
 LATE_S = 0.25  # a delay beyond this is given up instead of being made up for
 LOG = 500
+QUIET_S = 0.02  # an operating system hands characters over in lumps; a message has ended when none has come for so long
 
 
 class Plant(Protocol):
@@ -42,6 +45,16 @@ class StepChange:
 
 _sessions: dict[str, "Session"] = {}
 _registry = threading.Lock()
+
+
+@dataclass
+class _Connection:
+    """A port's way to a real line: what has come and is not yet a whole message, and when the last of it came."""
+
+    outlet: Outlet
+    line: OutsideLine
+    heard: bytearray = field(default_factory=bytearray)
+    since: float = 0.0
 
 
 class Session:
@@ -70,6 +83,7 @@ class Session:
         self._thread: threading.Thread | None = None
         self._task: Any = None  # keeps the loop alive where there are no threads
         self._loop: object | None = None  # the loop that may go on; any other one ends at its next turn
+        self._connections: dict[int, _Connection] = {}
         self._asked = False  # observers are to be called by the loop
         self._showing = False
         self._initial = self._take()
@@ -109,8 +123,56 @@ class Session:
         plc = self.plc
         if plc.program is not self._program or plc.memory.generation != self._generation:
             self._look()
+        if self._connections:
+            self._listen()
         self.history.tick(plc.scans)
         self._step()
+        for connection in self._connections.values():
+            connection.line.write(connection.outlet.outbox)
+            connection.outlet.outbox.clear()
+
+    def connect(self, port: int, where: str) -> None:
+        """Connect a serial port of the PLC to a real line, in real time: a serial device's path or "tcp://host:port".
+
+        It stays connected until `disconnect` or the end of the session. Raises EcsimError for a line that cannot be opened.
+        """
+        if not isinstance(port, int) or not 0 <= port < len(self.plc.ports):
+            raise EcsimError(f"there is no port {port!r}; the PLC has {', '.join(str(each.number) for each in self.plc.ports)}")
+        if port in self._connections:
+            raise EcsimError(f"port {port} is connected to {self._connections[port].line.where}; disconnect({port}) first")
+        line = OutsideLine(where, self.plc.ports[port].framing)
+        with self._lock:
+            outlet = Outlet(self.plc.ports[port].framing)
+            self.plc.ports[port].connect(outlet)
+            self._connections[port] = _Connection(outlet, line)
+
+    def disconnect(self, port: int) -> None:
+        """Take a port off its real line, and close the line."""
+        with self._lock:
+            connection = self._connections.pop(port, None)
+            if connection is None:
+                raise EcsimError(f"port {port!r} is connected to no line")
+            connection.outlet.wire.leave(connection.outlet)
+            connection.line.close()
+
+    def _listen(self) -> None:
+        """Whole messages of the real lines go to the ports; a step back repeats them as an action."""
+        now = time.perf_counter()
+        for number, connection in self._connections.items():
+            octets = connection.line.read()
+            if octets:
+                connection.heard += octets
+                connection.since = now
+            elif connection.heard and now - connection.since >= QUIET_S:
+                message = bytes(connection.heard)
+                connection.heard.clear()
+
+                def enter(number=number, outlet=connection.outlet, message=message) -> None:
+                    outlet.enter(message, self.plc.ports[number].wire_time())
+                    self.plc.ports[number].stirred()
+
+                self.history.note(self.plc.scans, enter)
+                enter()
 
     def _look(self) -> None:
         """Find things again after another program was loaded (there is no way back across that) or a device was forced."""
@@ -226,6 +288,8 @@ class Session:
         thread, self._thread = self._thread, None
         if thread is not None and thread is not threading.current_thread():
             thread.join(timeout=5)
+        for port in list(self._connections):
+            self.disconnect(port)
         self._show()
 
     def run(self) -> None:
@@ -281,6 +345,8 @@ class Session:
             self._drain()
             self._look()
             done = self.history.go(self.plc.scans - scans, self._step)
+            for connection in self._connections.values():
+                connection.outlet.outbox.clear()  # what is repeated has been said
         self._show()
         return done
 
