@@ -76,8 +76,9 @@ class SteppingEngine:
         if self.recording:
             if unit.upper() == self.program.main.name.upper():
                 self.trace = Trace.blank(self.length)
-            for _ in self.walk(unit):
-                pass
+            flow, writes, order = self.trace.flow, self.trace.writes, self.trace.order
+            for position in self.walk(unit):
+                order.append((position, flow[position], len(writes)))
             return self.halted
         return self._bare(self.entries[unit.upper()])
 

@@ -15,11 +15,15 @@ class Write:
 
 @dataclass(slots=True)
 class Trace:
-    """One scan: by position of an instruction the flow after it and a contact's own state, None where it was not executed."""
+    """One scan: by position of an instruction the flow after it and a contact's own state, None where it was not executed.
+
+    `order` has each execution in turn, of loops and interrupt programs too: position, flow after it, how many writes there were then.
+    """
 
     flow: list[bool | None]
     closed: list[bool | None]
     writes: list[Write] = field(default_factory=list)
+    order: list[tuple[int, bool, int]] = field(default_factory=list)
 
     @classmethod
     def blank(cls, length: int) -> "Trace":

@@ -129,3 +129,14 @@ def test_every_change_of_a_scan_is_told(seed):
             for number, (old, new) in enumerate(zip(before[area], after[area], strict=True)):
                 assert old == new or told.get(area + form.format(number)) == new
         plc.run()
+
+
+def test_each_execution_is_told_in_turn_with_its_flow_and_its_writes():
+    plc = traced("LD X0\nFOR 2\nLD M0\nINV\nOUT M0\nNEXT\nLD M0\nOUT Y0", X0=1)
+    plc.scan()
+    lines = [instruction.line for instruction in plc.program.instructions]
+    told = [(lines[position], flow, writes) for position, flow, writes in plc.trace.order]
+    passes = [[(3, False), (4, True), (5, True)], [(3, True), (4, False), (5, False)]]
+    assert [(line, flow) for line, flow, _ in told if line in (3, 4, 5)] == passes[0] + passes[1]
+    assert [writes for line, _, writes in told if line == 5] == [1, 2]
+    assert told[-2:] == [(7, False, 2), (8, False, 2)]
