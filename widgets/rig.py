@@ -8,7 +8,7 @@ from __future__ import annotations
 import copy
 import re
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -17,6 +17,7 @@ from ecsim.devices import Bits, Constant, number_text
 from ecsim.errors import EcsimError
 
 from .history import StepTimes, Watch
+from .table import Table
 
 PREFIX = "EC0-"  # of all ids in a drawing; the page makes it unique for each view
 LEAST_POINTS = {"X": 16, "Y": 12}
@@ -78,6 +79,7 @@ class Rig:
         picture: Any = None,
         controls: Mapping[str, str] | None = None,
         title: str = "Machine",
+        devices: Iterable[str] = (),
     ):
         self.plc, self.session, self.watch, self.terminals = plc, session, watch, terminals
         self.wiring = terminals.wiring if terminals else {}
@@ -86,6 +88,9 @@ class Rig:
         self.refused = ""  # why the last thing asked for was not done
         self.recent: deque[int] = deque(maxlen=RECENT)
         watch.watchers.append(self._note_scan)
+        self.table = Table(plc, self.point)
+        for text in devices:
+            self.table.add(text)
         self.read_program()
 
     def read_program(self) -> None:
@@ -110,6 +115,7 @@ class Rig:
             if instruction.mnemonic == "STL":
                 self.charted.setdefault(str(instruction.operands[0]), instruction)
         self._times, self._times_of = StepTimes(), (0, None)
+        self.table.follow_program()
 
     # -- what there is ------------------------------------------------------------------------------------------
 
