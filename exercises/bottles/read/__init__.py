@@ -1,0 +1,5 @@
+"""The bottle machine's program, to be read before it is run."""
+
+from .questions import READING
+
+__all__ = ["READING"]
