@@ -62,7 +62,7 @@ class Lab(Panel):
         watch = Watch()
         session = Session(plc, plant=terminals, name=name, speed=speed, record=watch)
         if name in self._labs:
-            self._labs.pop(name).close()
+            self._labs[name].close()
         self.name = name
         title = title or re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(plant).__name__) if plant is not None else ""
         rig = Rig(plc, session, watch, terminals=terminals, picture=picture, controls=controls, title=title)
@@ -71,6 +71,11 @@ class Lab(Panel):
         plc.tracing = True
         if autostart:
             session.run()
+
+    @classmethod
+    def named(cls, name: str) -> Lab | None:
+        """The lab of that name, None where there is none."""
+        return cls._labs.get(name)
 
     def chosen(self) -> list[type[Part]]:
         return [PARTS[key] for key in parts_of(self.rig)]
@@ -98,6 +103,9 @@ class Lab(Panel):
 
     def close(self) -> None:
         """End the simulation and take the panels from the page."""
+        with contextlib.suppress(AttributeError):  # it may not have been made to the end
+            if self._labs.get(self.name) is self:
+                del self._labs[self.name]
         with contextlib.suppress(Exception):
             self.session.stop()
         super().close()
