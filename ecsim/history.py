@@ -57,17 +57,14 @@ class History:
         return self.frames[0][0] if self.frames else None
 
     def go(self, scan: int, step: Callable[[], None]) -> bool:
-        """Go back to just before scan number `scan`, running forward again from the keyframe with `step`; what came later is dropped."""
+        """Go to just before scan number `scan`, running forward from an earlier keyframe with `step`; what is known of later scans stays."""
         if self.first is None or scan < self.first:
             return False
-        while self.frames[-1][0] > scan:
-            self.frames.pop()
-        at, contained, frame = self.frames[-1]
-        if at == scan:
-            self.frames.pop()
+        # one before the scan if there is any: the scan that leads there is done again, for those who look on
+        place = max((place for place, frame in enumerate(self.frames) if frame[0] < scan), default=0)
+        at, contained, frame = self.frames[place]
         self.put(frame)
-        self.actions = [entry for entry in self.actions if entry[0] <= scan]
-        journal = [entry for entry in self.actions if entry[1] >= contained]
+        journal = [entry for entry in self.actions if entry[1] >= contained and entry[0] <= scan]
         place = 0
         for number in range(at, scan + 1):
             while place < len(journal) and journal[place][0] == number:
@@ -76,3 +73,8 @@ class History:
             if number < scan:
                 step()
         return True
+
+    def fork(self, scan: int) -> None:
+        """From before scan number `scan` on everything happens anew: what came later is forgotten."""
+        self.frames = [frame for frame in self.frames if frame[0] < scan]
+        self.actions = [entry for entry in self.actions if entry[0] <= scan]

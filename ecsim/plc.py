@@ -115,6 +115,7 @@ class Plc(Programming, States):
         self._engines: dict[type, CompiledEngine | SteppingEngine] = {}
         self._tracing = self._stepping = False
         self._asked = 0
+        self._transitions = [False]  # whether those of the charts are held
         self._spent = [0]  # ns that program and interrupt programs have taken since the main program ended the last time
         self._took_ns = self._program_ns = 0  # what that came to when it ended; what it takes without loops and calls
         self._limit_ns = 0  # what they may take
@@ -134,6 +135,7 @@ class Plc(Programming, States):
             "executed": self.faults.executed,
             "spend": self._spend,
             "SPENT": self._spent,
+            "HELD": self._transitions,
             "release": self.release,
             "placed": self.memory.placed,
             "machine": self,
@@ -592,6 +594,19 @@ class Plc(Programming, States):
     def names(self) -> dict[str, str]:
         """Canonical device -> the name that the program gives it."""
         return self.program.names()
+
+    @property
+    def transitions_held(self) -> bool:
+        """Whether the transitions of the charts are held: SET S, OUT S and RST S in a step do nothing though power reaches them.
+
+        It is the debugger's, no state of the machine; all else goes on.
+        """
+        return self._transitions[0]
+
+    @transitions_held.setter
+    @alone
+    def transitions_held(self, on: bool) -> None:
+        self._transitions[0] = bool(on)
 
     # -- state --------------------------------------------------------------------------------------------------
 

@@ -11,12 +11,16 @@ from itertools import takewhile
 from operator import itemgetter
 from typing import Any, Protocol
 
+from .breakpoints import Breakpoint, Breakpoints
+from .conditions import condition
 from .errors import EcsimError
 from .hardware.wire import Outlet
 from .history import History
 from .outside import OutsideLine
 from .plc import Plc
 from .record import Recording
+from .system import within
+from .views.flows import Flow, Step, Transition, parts
 
 FRAME_S = 1 / 30  # observers are called at most this often
 SLICE_S = 0.02  # at full speed, how long scans run before actions and observers get their turn
@@ -43,6 +47,24 @@ class StepChange:
     active: bool
 
 
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """Something to be found again in the past of a run: before which scan, "breakpoint" or "fault", and what it was in words."""
+
+    scan: int
+    kind: str
+    words: str
+
+
+@dataclass(frozen=True, slots=True)
+class Tip:
+    """The newest moment of a run whose past is shown: its scan, its time in us, its log."""
+
+    scan: int
+    time_us: int
+    log: tuple[StepChange, ...]
+
+
 _sessions: dict[str, "Session"] = {}
 _registry = threading.Lock()
 
@@ -67,6 +89,16 @@ class Session:
     def __init__(self, plc: Plc, plant: Plant | None = None, name: str = "lab", speed: float | None = 1.0, record: Recording | None = None):
         self.plc, self.plant, self.name = plc, plant, name
         self.recording = record
+        self.trace_frames = False  # whether the last scan before observers are called is traced; the others run at full speed
+        self.refused = ""  # why the last action was not done
+        self.breakpoints = Breakpoints(plc, self._arm)
+        self.hit: Breakpoint | None = None  # the breakpoint that has stopped the run
+        self.marks: deque[Mark] = deque(maxlen=LOG)
+        self._armed: tuple[Breakpoint, ...] = ()
+        self._hooks: list[Callable[[], Any]] = []
+        self._tip: Tip | None = None  # not None while the past is shown
+        self._goal: int | None = None  # the scan before which a way through the past ends
+        self._flows: tuple[Any, list[Step]] = (None, [])
         self._speed = _fitting_speed(speed)
         self._plant_on = plant is not None
         self.state = "stopped"
@@ -86,9 +118,10 @@ class Session:
         self._connections: dict[int, _Connection] = {}
         self._asked = False  # observers are to be called by the loop
         self._showing = False
+        self._bind()
+        self._ask_plant()
         self._initial = self._take()
         self.history = History(self._take, self._put)
-        self._bind()
 
     # -- the simulation -----------------------------------------------------------------------------------------
 
@@ -117,10 +150,47 @@ class Session:
         if steps != self._steps:
             self._steps, self._last_steps = steps, None
         self._step_values = itemgetter(*steps, steps[0]) if steps else None
+        area, self._fault_number = plc.model.flag("fault")
+        self._fault_list = plc.memory.lists[area]
+        self._fault = bool(self._fault_list[self._fault_number])
 
-    def _scan(self) -> None:
+    def _ask_plant(self) -> None:
+        """What the plant's sensors say before any time passes."""
+        self._first_answers: dict[str, int] = {}
+        if self.plant is None:
+            return
+        plc = self.plc
+        outputs = dict(zip(self._output_names, map(int, self._driven(plc.memory.lists["Y"])), strict=False)) | dict.fromkeys(
+            self._counted, 0
+        )
+        outputs |= {name: self._signals[name].get() for name in self._analog_outputs}
+        self._first_answers = dict(self.plant.step(0.0, outputs))
+        self._answer_first()
+
+    def _answer_first(self) -> None:
+        """Put the first answers on the inputs. The plant has stood there all along: no input filter delays them."""
+        self._enter(self._first_answers, self.plc.clock[0])
+        for number in self._inputs.values():
+            self.plc.inputs.waiting.pop(number, None)
+
+    def _enter(self, sensors: dict[str, int], now: int) -> None:
+        """Put what the plant says on the inputs, and into the registers that it writes."""
+        plc = self.plc
+        for name, level in sensors.items():
+            if name in self._inputs:
+                plc.inputs.set(self._inputs[name], level, now)
+            elif name in self._signals:
+                self._signals[name].put(level)
+            else:  # a value that comes over a line, as from a scale or a touch screen
+                plc.memory.set(*self._registers[name], level)
+
+    def _scan(self, traced: bool = False) -> None:
         """The PLC scans once, then the plant moves under its outputs for the time of that scan."""
         plc = self.plc
+        if self._tip is not None:
+            self._fork()
+        if self.trace_frames and plc.tracing is not traced:
+            plc.tracing = traced
         if plc.program is not self._program or plc.memory.generation != self._generation:
             self._look()
         if self._connections:
@@ -179,7 +249,12 @@ class Session:
         if self.plc.downloads != self._downloads:
             self.history.clear()
             self.step_since.clear()
-        self._bind()
+            self.marks.clear()
+            self._tip = None
+            self._bind()
+            self.breakpoints.follow()
+        else:
+            self._bind()
 
     def _step(self) -> None:
         plc = self.plc
@@ -198,19 +273,46 @@ class Session:
             sensors = self.plant.step((now - before) / 1e6, self._outputs)
             if sensors != self._last_sensors:
                 self._last_sensors = sensors
-                for name, level in sensors.items():
-                    if name in self._inputs:
-                        plc.inputs.set(self._inputs[name], level, now)
-                    elif name in self._signals:
-                        self._signals[name].put(level)
-                    else:  # a value that comes over a line, as from a scale or a touch screen
-                        plc.memory.set(*self._registers[name], level)
-        if self._step_values is not None:
-            steps = self._step_values(plc.memory.lists["S"])
-            if steps != self._last_steps:
-                self._note_steps(steps)
+                self._enter(sensors, now)
+        self._look_at_steps()
+        if self._fault_list[self._fault_number] is not self._fault:
+            self._note_fault()
         if self.recording is not None:
             self.recording.sample()
+        for hook in self._hooks:
+            hook()
+        if self._armed:
+            self._check_breakpoints()
+
+    def _look_at_steps(self) -> None:
+        if self._step_values is not None:
+            steps = self._step_values(self.plc.memory.lists["S"])
+            if steps != self._last_steps:
+                self._note_steps(steps)
+
+    def _note_fault(self) -> None:
+        """An execution error has come, or gone."""
+        self._fault = bool(self._fault_list[self._fault_number])
+        errors = self.plc.errors
+        if self._fault and errors:
+            self._mark("fault", f"Error {errors[0].code}, {errors[0].meaning}")
+
+    def _mark(self, kind: str, words: str) -> None:
+        mark = Mark(self.plc.scans, kind, words)
+        if mark not in self.marks:  # it is met again on the way through the past
+            self.marks.append(mark)
+
+    def _arm(self) -> None:
+        self._armed = self.breakpoints.armed
+
+    def _check_breakpoints(self) -> None:
+        for each in self._armed:
+            if each.rises() and self.hit is None and self._goal is None:
+                each.hits += 1
+                self.hit = each
+                self._mark("breakpoint", each.text)
+                if self.state == "running":
+                    self.state = "paused"
 
     def _new_pulses(self) -> dict[str, int]:
         """The pulses of each counted output since the last look."""
@@ -232,20 +334,79 @@ class Session:
 
     def _take(self) -> tuple:
         plant = plant_state(self.plant)
-        return self.plc.snapshot(), plant, self._plant_on, dict(self.step_since), list(self.log)
+        return self.plc.snapshot(), plant, self._plant_on, dict(self.step_since), list(self.log), self.plc.transitions_held
 
     def _put(self, frame: tuple) -> None:
-        snapshot, plant, on, since, log = frame
+        snapshot, plant, on, since, log, held = frame
         self.plc.restore(snapshot)
         self._bind()
         restore_plant(self.plant, plant)
-        self._plant_on = on
+        self._plant_on, self.plc.transitions_held = on, held
         self._last_driven = self._last_sensors = None
         self.step_since = dict(since)
         self.log = deque(log, maxlen=LOG)
         self._last_steps = None if not self._steps else self._step_values(self.plc.memory.lists["S"])
         if self.recording is not None:
             self.recording.forget(self.plc.clock[0])
+        self.breakpoints.look()
+
+    # -- the past -----------------------------------------------------------------------------------------------
+
+    @property
+    def tip(self) -> Tip:
+        """The newest moment of the run; while the past is shown it lies ahead."""
+        return self._tip or Tip(self.plc.scans, self.plc.clock[0], tuple(self.log))
+
+    @property
+    def in_past(self) -> bool:
+        """Whether an earlier moment than the newest is shown."""
+        return self._tip is not None
+
+    def seek(self, scan: int) -> bool:
+        """Pause, and show the moment before scan number `scan`, between the first one remembered and the newest; false beyond these.
+
+        What came later stays until something happens: a scan, a write, a run from here on take another way.
+        """
+        self.pause()
+        with self._lock:
+            self._drain()
+            self._look()
+            tip = self.tip
+            done = scan <= tip.scan and self._travel(scan)
+            if done:
+                self._tip = tip if self.plc.scans < tip.scan else None
+                self.hit = None
+        self._show()
+        return done
+
+    def _travel(self, scan: int) -> bool:
+        """Go to the moment before a scan; the scan that leads there is traced where frames are."""
+        self._goal = scan
+        try:
+            return self.history.go(scan, self._again)
+        finally:
+            self._goal = None
+            for connection in self._connections.values():
+                connection.outlet.outbox.clear()  # what is repeated has been said
+
+    def _again(self) -> None:
+        if self.trace_frames:
+            self.plc.tracing = self.plc.scans + 1 == self._goal
+        self._step()
+
+    def _fork(self) -> None:
+        """Something happens in the past: from here on it is the present."""
+        self._tip = None
+        self.history.fork(self.plc.scans)
+        while self.marks and self.marks[-1].scan > self.plc.scans:
+            self.marks.pop()
+
+    def _retrace(self) -> None:
+        """Do the last scan again, traced, where the run has ended with one that was not."""
+        if self.trace_frames and not self.plc.tracing and self.history.first is not None and self.history.first < self.plc.scans:
+            self._look()
+            if self.history.first is not None:
+                self._travel(self.plc.scans)
 
     # -- control ------------------------------------------------------------------------------------------------
 
@@ -297,6 +458,7 @@ class Session:
         if self.state == "failed":
             raise EcsimError(f"the session {self.name!r} has failed: {self.error}; reset() begins anew")
         self._do(lambda plc: plc.run())
+        self.hit = None
         self.start()
         self.state = "running"
         self._wake.set()
@@ -306,17 +468,46 @@ class Session:
         if self.state == "running":
             with self._lock:
                 self.state = "paused"
+                self._retrace()
             self._wake.set()
             self._show()
 
     def scan(self, count: int = 1) -> None:
-        """Pause, and do so many scans."""
+        """Pause, and do so many scans, fewer when a breakpoint is met."""
         self.pause()
         with self._lock:
             self._drain()
-            for _ in range(count):
-                self._scan()
+            self.hit = None
+            for number in range(count):
+                self._scan(number == count - 1)
+                if self.hit is not None:
+                    self._retrace()
+                    break
         self._show()
+
+    def until(self, text: str, timeout_ms: float = 10_000) -> float:
+        """Pause, and scan with the plant until a condition holds ("Y0", "D0 > 100 and not X1"); the simulated ms that it took.
+
+        Raises EcsimError for what is no condition, and when it does not come true in time or a breakpoint is met before.
+        """
+        test = condition(self.plc, text)
+        within("timeout_ms", timeout_ms, 0, 1e12)
+        self.pause()
+        with self._lock:
+            self._drain()
+            self.hit = None
+            began = self.plc.clock[0]
+            while not (done := test()) and self.hit is None and self.plc.clock[0] - began < timeout_ms * 1000:
+                self._scan()
+            self._retrace()
+            took_ms = (self.plc.clock[0] - began) / 1000
+        self._show()
+        if done:
+            return took_ms
+        if self.hit is not None:
+            raise EcsimError(f"{text} has not come true: the breakpoint {self.hit.text} stopped the run after {took_ms:g} ms")
+        hint = "" if self.plc.running else "; the PLC is in STOP, run() starts it"
+        raise EcsimError(f"{text} did not come true within {timeout_ms:g} ms of simulated time{hint}")
 
     def next_step(self, limit_ms: float = 600_000) -> str | None:
         """Pause, and scan until a step begins or ends: the step that began, or else the one that ended.
@@ -327,40 +518,40 @@ class Session:
         changes: list[StepChange] = []
         with self._lock:
             self._drain()
+            self.hit = None
             end = self.plc.clock[0] + limit_ms * 1000
-            while not changes and self.plc.clock[0] < end:
+            while not changes and self.hit is None and self.plc.clock[0] < end:
                 self._scan()
                 changes = list(takewhile(lambda change: change.scan == self.plc.scans, reversed(self.log)))
                 if not (self._steps and self.plc.running):
                     break
+            self._retrace()
         self._show()
         return max(changes, key=lambda change: change.active).step if changes else None
 
     def back(self, scans: int = 1) -> bool:
-        """Pause, and go back by so many scans; false when that is further than is remembered."""
+        """Pause, and go back by so many scans; false when that is further than is remembered. See `seek`."""
         if scans < 1:
             raise EcsimError(f"back by {scans!r} scans; give a number from 1 on")
         self.pause()
-        with self._lock:
-            self._drain()
-            self._look()
-            done = self.history.go(self.plc.scans - scans, self._step)
-            for connection in self._connections.values():
-                connection.outlet.outbox.clear()  # what is repeated has been said
-        self._show()
-        return done
+        return self.seek(self.plc.scans - scans)
 
     def reset(self) -> None:
         """Time, inputs and plant as they were when the session was made; the PLC is switched off and on, and begins in RUN."""
         with self._lock:
             self._actions.clear()
             self.history.clear()
+            self.marks.clear()
+            self._tip = self.hit = None
+            self.refused = ""
             self._bind()
             snapshot, plant, on, *_ = self._initial
             program = self.plc.program
             if not self.plc.has_been(snapshot["program"]):
                 snapshot = self.plc.snapshot()  # the time of another program does not come back
-            self._put((snapshot, plant, on, {}, []))
+            self._put((snapshot, plant, on, {}, [], False))
+            if on:
+                self._answer_first()
             if self.plc.program is not program:
                 self.plc.return_to(program)  # what was changed in RUN stays changed
             if self.recording is not None:
@@ -397,13 +588,20 @@ class Session:
     # -- actions and observers ------------------------------------------------------------------------------------
 
     def post(self, action: Callable[[Plc], Any]) -> None:
-        """Have `action(plc)` done before the next scan; it is remembered, so that a step back repeats it."""
+        """Have `action(plc)` done before the next scan; it is remembered, so that a step back repeats it.
+
+        What the Plc refuses (EcsimError) stands in `refused`, and the session goes on; while nothing runs it is raised here too.
+        """
         self._actions.append(action)
         self._wake.set()
         if self.state != "running":
             with self._lock:
+                self.refused = ""
                 self._drain()
+                refused = self.refused
             self._show()
+            if refused:
+                raise EcsimError(refused)
 
     def set(self, device: str, value: Any) -> None:
         """Write a device, or put a level on an input, before the next scan. A bad name or value raises here."""
@@ -413,6 +611,8 @@ class Session:
     def receive(self, name: str, first: int, values: list) -> None:
         """Write devices as `Memory.receive` does, between two scans; a step back repeats it. It is for communication partners, who hold the Plc's lock."""
         receive = self.plc.memory.receive
+        if self._tip is not None:
+            self._fork()
         self.history.overwrite(self.plc.scans, (name, first, len(values)), lambda: receive(name, first, values))
         receive(name, first, values)
         if self.state != "running":
@@ -427,15 +627,93 @@ class Session:
     def _do(self, action: Callable[[Plc], Any]) -> None:
         with self._lock:
             self._drain()
-            self.history.note(self.plc.scans, lambda: action(self.plc))
+            self._note(lambda: action(self.plc))
             action(self.plc)
         self._show()
+
+    def _note(self, action: Callable[[], Any]) -> None:
+        """An action is remembered; in the past it begins another way."""
+        if self._tip is not None:
+            self._fork()
+        self.history.note(self.plc.scans, action)
 
     def _drain(self) -> None:
         while self._actions:
             action = self._actions.popleft()
-            self.history.note(self.plc.scans, lambda action=action: action(self.plc))
+            self._note(lambda action=action: self._attempt(action))
+            self._attempt(action)
+
+    def _attempt(self, action: Callable[[Plc], Any]) -> None:
+        """Do an action; one that is refused is told, and nothing fails."""
+        try:
             action(self.plc)
+            self.refused = ""
+        except EcsimError as error:
+            self.refused = str(error)
+        self._look_at_steps()
+
+    # -- the chart by hand ----------------------------------------------------------------------------------------
+
+    @property
+    def transitions_held(self) -> bool:
+        """Whether the steps stay as they are though conditions are met: a transition that would fire does nothing."""
+        return self.plc.transitions_held
+
+    @transitions_held.setter
+    def transitions_held(self, on: bool) -> None:
+        self._do(lambda plc: setattr(plc, "transitions_held", bool(on)))
+
+    def set_step(self, step: str, on: bool = True) -> None:
+        """Begin a step, or end it, before the next scan, whatever led there; raises EcsimError for what is no step of the program."""
+        device, _ = self.plc.memory.parse(step, self.plc._names)
+        if device.area != "S":
+            raise EcsimError(f"{step} is no step; steps are S devices")
+        self.set(str(device), int(bool(on)))
+
+    def transitions(self, step: str) -> list[tuple[Step, Transition]]:
+        """The transitions that lead out of a step, in the program's order, each with its STL: of a join it takes several steps."""
+        if self._flows[0] is not self.plc.program:
+            steps = [each for part in parts(self.plc.program.main) if isinstance(part, Flow) for each in part.steps]
+            self._flows = self.plc.program, steps
+        return [(each, way) for each in self._flows[1] if step in map(str, each.devices) for way in each.transitions]
+
+    def fire(self, step: str, to: str | None = None) -> None:
+        """Take a transition out of an active step by hand before the next scan, whether its condition holds or not.
+
+        `to` is a step that it leads to, needed where there is a choice. Raises EcsimError where none can be taken.
+        """
+        step = str(self.plc.memory.parse(step, self.plc._names)[0])
+        to = None if to is None else str(self.plc.memory.parse(to, self.plc._names)[0])
+        ways = self.transitions(step)
+        if not ways:
+            raise EcsimError(f"no transition leads out of {step}")
+        chosen = [(each, way) for each, way in ways if to is None or to in map(str, way.steps)]
+        targets = ", ".join(" and ".join(map(str, way.steps)) or "its end" for _, way in ways)
+        if not chosen:
+            raise EcsimError(f"no transition leads from {step} to {to}; it leads to {targets}")
+        if len(chosen) > 1:
+            raise EcsimError(f"{len(chosen)} transitions lead out of {step}, to {targets}; say which with to=")
+        each, way = chosen[0]
+        self.post(lambda plc: self._fire(each, way))
+
+    def _fire(self, step: Step, way: Transition) -> None:
+        missing = [str(device) for device in step.devices if not self.plc[str(device)]]
+        if missing:
+            raise EcsimError(f"{' and '.join(missing)} {'is' if len(missing) == 1 else 'are'} not active, so the transition cannot fire")
+        self.plc.set({str(device): 0 for device in step.devices} | {str(target): 1 for target in way.steps})
+
+    def each_scan(self, callback: Callable[[], Any]) -> Callable[[], None]:
+        """Have `callback()` called after every scan, in the thread that scans and between two scans; returns what ends it.
+
+        It must be quick, and look only. On the way through the past the scans that are done again call it too.
+        """
+        self._hooks.append(callback)
+
+        def end() -> None:
+            with contextlib.suppress(ValueError):
+                self._hooks.remove(callback)
+
+        return end
 
     def observe(self, callback: "Callable[[Session], Any]") -> Callable[[], None]:
         """Have `callback(session)` called after changes; returns what ends it.
@@ -496,11 +774,15 @@ class Session:
                 if running:
                     with self._lock:
                         self._drain()
-                        debt = self._catch_up(loop, now, deadline, debt)
+                        debt = self._catch_up(loop, now, deadline, debt, shown + FRAME_S)
+                        if self.hit is not None:
+                            self._retrace()
+                            self._asked = True
                 else:
                     debt = 0.0
                 deadline = now
-                if self._asked or (running and time.perf_counter() - shown >= FRAME_S):
+                fresh = self.plc.tracing or not self.trace_frames  # else the next scan is the one to be shown
+                if self._asked or (running and fresh and time.perf_counter() - shown >= FRAME_S):
                     shown = time.perf_counter()
                     self._show()
                 yield self._pause_s(debt) if running else 0.25
@@ -513,20 +795,23 @@ class Session:
                 with contextlib.suppress(Exception):
                     self._show()
 
-    def _catch_up(self, loop: object, now: float, deadline: float, debt: float) -> float:
-        """Do the scans that are due; what cannot be made up for is given up."""
+    def _catch_up(self, loop: object, now: float, deadline: float, debt: float, frame_due: float) -> float:
+        """Do the scans that are due; what cannot be made up for is given up. The last one before a frame is due is traced."""
         speed = self._speed
         if speed is None:
             while time.perf_counter() - now < SLICE_S and self.state == "running" and self._loop is loop:
                 self._scan()
+            if self.state == "running" and self._loop is loop and time.perf_counter() >= frame_due:
+                self._scan(True)
             return 0.0
         debt += (now - deadline) * 1e6 * speed
         if debt > LATE_S * 1e6 * speed:
             self.late += 1
             debt = min(debt, LATE_S * 1e6 * speed)
-        while debt >= self.plc.period_us:
-            debt -= self.plc.period_us
-            self._scan()
+        while debt >= (period_us := self.plc.period_us):
+            debt -= period_us
+            last = debt < period_us
+            self._scan(last and now + (period_us - debt) / 1e6 / speed >= frame_due)
             if self.state != "running" or self._loop is not loop:
                 break
             if time.perf_counter() - now > LATE_S:

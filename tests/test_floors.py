@@ -19,8 +19,8 @@ FLOORS = (
     ("assembler", "project", "protection", "system"),
     ("engines", "editing", "saved", "states"),
     ("plc", "programming", "formats", "monitor"),
-    ("views", "record", "history", "network", "outside", "modbus", "verify", "scenario", "help"),
-    ("session",),
+    ("views", "record", "conditions", "history", "network", "outside", "modbus", "verify", "scenario", "help"),
+    ("breakpoints", "session"),
     ("grading",),
     ("cli", "terminal", "pytest_plugin", "__init__", "__main__"),
 )

@@ -1,5 +1,7 @@
 """The way back: keyframes, and what was done between them."""
 
+import pytest
+
 from ecsim.history import EVERY, KEEP, History
 
 
@@ -32,7 +34,11 @@ class Counter:
         action()
 
     def back(self, scans):
-        return self.history.go(self.scan - scans, self.step)
+        """Back for good: what came later is forgotten."""
+        done = self.history.go(self.scan - scans, self.step)
+        if done:
+            self.history.fork(self.scan)
+        return done
 
 
 def test_a_step_back_undoes_a_scan():
@@ -76,12 +82,28 @@ def test_an_action_at_a_keyframe_is_done_once():
     assert (counter.scan, counter.value) == (EVERY, EVERY + 100)
 
 
-def test_the_way_back_begins_at_the_nearest_keyframe():
+@pytest.mark.parametrize(("scan", "again"), [(2 * EVERY + 1, 1), (2 * EVERY + 7, 7), (2 * EVERY, EVERY), (0, 0)])
+def test_the_way_leads_from_the_nearest_keyframe_and_does_the_last_scan_again(scan, again):
     counter = Counter()
     counter.run(3 * EVERY + 10)
-    counter.step = None  # no scan is needed to reach a keyframe
-    assert counter.history.go(2 * EVERY, counter.step)
-    assert counter.scan == 2 * EVERY
+    steps = []
+
+    def step():
+        steps.append(counter.scan)
+        counter.step()
+
+    assert counter.history.go(scan, step)
+    assert (counter.scan, len(steps)) == (scan, again)
+
+
+def test_without_a_fork_the_way_leads_forth_too():
+    counter = Counter()
+    counter.run(5)
+    counter.add(100)
+    counter.run(2 * EVERY)
+    for scan in (3, 2 * EVERY, 4, 2 * EVERY + 5):
+        assert counter.history.go(scan, counter.step)
+        assert (counter.scan, counter.value) == (scan, scan + 100 * (scan >= 5))
 
 
 def test_as_many_keyframes_are_kept_as_are_wanted():

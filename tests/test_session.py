@@ -297,13 +297,15 @@ def test_reset_begins_anew(make):
 def test_the_plant_gets_the_outputs_and_the_time_of_a_scan_and_gives_inputs(make):
     session = make(plant=Gate())
     session.scan(8)
-    assert session.plant.told == [(0.01, {"Y0": 0})] * 5 + [(0.01, {"Y0": 1})] * 3
+    # it is asked once before any time passes; 50 ms later it tells that it is shut
+    assert session.plant.told == [(0.0, {"Y0": 0})] + [(0.01, {"Y0": 0})] * 5 + [(0.01, {"Y0": 1})] * 3
     assert session.plc["X0"] == 0
 
 
 def test_without_the_plant_the_inputs_are_in_the_users_hand(make):
     session = make(plant=Gate())
     session.plant_on = False
+    session.plant.told.clear()
     session.scan(20)
     assert session.plant.told == []
     session.set("X0", 1)

@@ -471,11 +471,17 @@ class Writer:
 
     def turn_lines(self, d: Device, on: bool) -> list[str]:
         """A bit set or reset."""
-        return self.access.store(BOOL, d, "True") if on else self.access.reset(d)
+        lines = self.access.store(BOOL, d, "True") if on else self.access.reset(d)
+        return self._unless_held(lines) if self.in_step and d.area == "S" else lines
 
     def transfer_lines(self, target: Device) -> list[str]:
         """A step handed over: the steps that the transition stands in end, the target begins (5.3.2)."""
-        return [*(f"S[{step.number}] = False" for step in self.region.steps), f"S[{target.number}] = True"]
+        return self._unless_held([*(f"S[{step.number}] = False" for step in self.region.steps), f"S[{target.number}] = True"])
+
+    @staticmethod
+    def _unless_held(lines: list[str]) -> list[str]:
+        """What a transition does, asked for in the scan in which it fires: nothing while transitions are held."""
+        return ["if not HELD[0]:", *indented(lines)]
 
     def clear_lines(self, unit: Unit, region: Region) -> list[str]:
         """What is cleared when a region is left: the destinations of OUT, TON, TOF ... inside (5.2.1, 5.3.1)."""
