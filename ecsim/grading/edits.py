@@ -15,6 +15,7 @@ JOINED = {"AND": "OR", "OR": "AND", "ANI": "ORI", "ORI": "ANI", "ANB": "ORB", "O
 COILS = {"OUT": ("SET",), "SET": ("OUT", "RST"), "RST": ("SET",)}
 TIMERS = {"TON": ("TOF", "TONR"), "TOF": ("TON",), "TONR": ("TON",)}
 COMPARISONS = {"=": ("<>", ">="), "<>": ("=",), ">": (">=", "<="), ">=": (">", "<"), "<": ("<=", ">="), "<=": ("<", ">")}
+SMALL = 20  # numbers above it are changed by a tenth: one unit of 100 ms in five minutes is what every statement leaves open
 _COMPARISON = re.compile(r"(LD|AND|OR)([DR]?)(=|<>|>=|<=|>|<)")
 _NUMBER = re.compile(r"-?\d+")
 _DEVICE = re.compile(r"([A-Z]+)(\d+)")
@@ -79,7 +80,9 @@ def _other(operand: str, named: dict[str, list[str]]) -> list[str]:
     """What may stand in an operand's place: a number that is a little or much off, or a device of the same kind."""
     if _NUMBER.fullmatch(operand):
         number = int(operand)
-        return [str(other) for other in dict.fromkeys((number + 1, number - 1, number * 10, number // 10, number // 2)) if other != number]
+        little = 1 if abs(number) <= SMALL else round(0.1 * abs(number))
+        changed = dict.fromkeys((number + little, number - little, number * 10, number // 10, number // 2))
+        return [str(other) for other in changed if other != number]
     return named.get(operand.casefold(), [])
 
 

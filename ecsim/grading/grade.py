@@ -18,7 +18,7 @@ from .report import FAILED, PASSED, UNTRIED, Failure, Report, Verdict
 from .rules import Finding, Rule
 from .run import Run, Scenario, Trace
 
-SHORTENING = 40  # runs at most to find the shortest failing one of all rules together
+SHORTENING = 80_000  # scans at most to find the shortest failing run of all rules together: half a second
 PATIENCE = 3  # a program that the watchdog has stopped in so many runs is not tried any further: each costs seconds
 BEHIND_S = 3.0  # so long a run goes on behind its failure, for the chart
 
@@ -147,17 +147,19 @@ def shorten(stage: Stage, broken: dict[str, Broken], budget: int = SHORTENING) -
     """Make the choices of each failure simpler as long as the rule still breaks, and no later."""
     for name in broken:
         best, again = broken[name], True
-        while again and budget > 0:
+        while again:
             again = False
             for values in simpler(best.scenario.choices, best.values):
-                if budget <= 0:
+                cost = best.finding.scan + 1
+                if budget < 2 * cost:  # a shortened run is repeated for its chart
                     break
-                budget -= 1
+                budget -= cost
                 trace, _ = stage.run(best.scenario, values, best.finding.scan + 1)
                 finding = best.rule.judge(trace).finding
                 if finding is not None:
                     best, again = Broken(best.rule, best.scenario, values, finding, trace), True
                     break
+        budget -= best.finding.scan + 1 if best.trace.cut else 0
         broken[name] = best
 
 

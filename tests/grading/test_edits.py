@@ -24,7 +24,7 @@ def test_a_contact_is_turned_exchanged_and_left_out():
     [
         ("OUT Y0", {"SET Y0", ""}),
         ("SET Y0", {"OUT Y0", "RST Y0", ""}),
-        ("TON T0 30", {"TOF T0 30", "TONR T0 30", "TON T0 31", "TON T0 29", "TON T0 300", "TON T0 3", "TON T0 15", ""}),
+        ("TON T0 30", {"TOF T0 30", "TONR T0 30", "TON T0 33", "TON T0 27", "TON T0 300", "TON T0 3", "TON T0 15", ""}),
         ("MOV 0 D0", {"MOV 1 D0", "MOV -1 D0", ""}),
         ("LD>= D0 5", {"LD> D0 5", "LD< D0 5", "LD>= D0 6", "LD>= D0 4", "LD>= D0 50", "LD>= D0 0", "LD>= D0 2", ""}),
     ],
