@@ -657,6 +657,7 @@ class Plc(Programming, States):
         for place, kind, buffers, _ in state["units"]["modules"]["special"]:
             self.modules.built(place, kind, buffers)  # refuses one that could not be opened again
         settings = {"model": self.model.name, "places": saved.places(self.program), "files": list(self._files)}
+        settings["passwords of units"] = [(unit.password, unit.opened) for unit in self.program.units]
         settings |= {name: getattr(self, name) for name in ("scan_ms", "system", "protection", "engine", "tracing")}
         texts = {name or "main.il": text for name, text in self._files.items()}
         saved.write(path, texts, {"settings": settings, "state": state})
@@ -673,6 +674,8 @@ class Plc(Programming, States):
             files = {name: texts[name or "main.il"] for name in settings["files"]}
             program = assemble(files, plc.model)
             saved.put_places(program, settings["places"])
+            for unit, (password, opened) in zip(program.units, settings["passwords of units"], strict=True):
+                unit.password, unit.opened = password, opened
             plc.load(program)
             plc._files, plc.protection = files, settings["protection"]
             state = saved.decode(kept["state"], lambda number: Wired(plc.outputs, number))

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from ecsim import EcsimError, Plc, SystemBlock, saved
+from ecsim import EcsimError, Plc, Project, SystemBlock, saved
 from ecsim.hardware.modules import Module
 
 from .engines.random_programs import random_program
@@ -193,6 +193,18 @@ def test_passwords_and_files_of_a_project_are_kept(tmp_path):
         opened.upload()
     opened.unlock("upload", "secret")
     assert list(opened.upload().files) == ["main.il", "sub.il"]
+
+
+def test_a_unit_that_a_password_closes_stays_closed(tmp_path):
+    text = "LD M0\nCALL A\nCALL B\nSUBROUTINE A\nLD SM0\nINC D0\nEND_SUBROUTINE\nSUBROUTINE B\nLD SM0\nINC D1\nEND_SUBROUTINE\n"
+    plc = Plc()
+    plc.load(Project({"main.il": text}, protected={"A": "secret", "B": "other"}))
+    plc.unlock("B", "other")
+    opened = reopened(plc, tmp_path / "a.plc")
+    assert [opened.program.unit(name).closed for name in "AB"] == [True, False]
+    assert "INC   D0" not in opened.upload().files["main.il"]
+    opened.unlock("A", "secret")
+    assert opened.upload().files == {"main.il": text}
 
 
 def test_the_same_state_gives_the_same_file(tmp_path):
