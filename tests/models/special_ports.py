@@ -1,8 +1,10 @@
 """What the special relays and registers of the two serial ports do: checks as in special_checks.py."""
 
+import ecsim
 from ecsim import SystemBlock
 from ecsim.hardware.serial import PortSettings
 from ecsim.hardware.wire import Framing, Wire
+from ecsim.network import Network
 
 from .special_checks import ints, machine, main, run, values
 
@@ -347,6 +349,51 @@ def exchange(model, number):
         assert values(plc, "SM135", "SM136") == [0, 0]
 
 
+# -- ECbus --------------------------------------------------------------------------------------------------------
+
+
+def bus(model, port, stations, mode, most):
+    """Running stations of a bus, wired at one port, by their numbers."""
+    network = Network()
+    for number in stations:
+        settings = PortSettings("ecbus", station=number, refresh_mode=mode, stations=most)
+        plc = ecsim.Plc(model, system=SystemBlock(**{f"port{port}": settings}))
+        plc.run()
+        network.add(f"s{number}", plc)
+    network.wire(*(f"s{number}.{port}" for number in stations))
+    network.advance(ms=2000)
+    return network
+
+
+def silent_station(model, number):
+    """SM140 to SM171: ON while the station does not answer, on every other one."""
+    station = number - 140
+    other = 0 if station else 1
+    network = bus(model, 1, (station, other), mode=1, most=max(2, station + 1))
+    looking, failing = network[f"s{other}"], network[f"s{station}"]
+    assert looking[f"SM{number}"] == 0
+    failing.power_off()
+    network.advance(ms=2000)
+    assert looking[f"SM{number}"] == 1
+    failing.power_on()
+    network.advance(ms=2000)
+    assert looking[f"SM{number}"] == 0
+
+
+def refresh_mode(model, number):
+    """SD133 and SD138: which table of 10.5 divides the areas; station 0 may change it. Station 1 has D7708 to D7715 in mode 3, D7704 to D7707 in mode 2."""
+    network = bus(model, (number - 133) // 5, (0, 1), mode=3, most=2)
+    leader, other = network["s0"], network["s1"]
+    assert (leader[f"SD{number}"], other[f"SD{number}"]) == (3, 3)
+    other.set({"D7704": 1, "D7708": 2})
+    network.advance(ms=300)
+    assert values(leader, "D7704", "D7708") == [0, 2]
+    leader[f"SD{number}"] = 2
+    other["D7704"] = 3
+    network.advance(ms=2000)
+    assert leader["D7704"] == 3
+
+
 def both(kind, number, check):
     """The same device of either port."""
     return {f"{kind}{number}": check, f"{kind}{number + 10}": check}
@@ -359,4 +406,5 @@ CHECKS = {
     **both("SD", 114, frame_timeout), **both("SD", 115, completion), **both("SD", 116, last_received), **both("SD", 117, count_received),
     **both("SD", 118, last_sent), "SD130": station, "SD135": station, "SD131": timeout, "SD136": timeout, "SD132": retries, "SD137": retries,
     "SM135": exchange, "SM136": exchange, "SD139": exchange,
+    **run("SM", 140, 171, silent_station), "SD133": refresh_mode, "SD138": refresh_mode,
 }  # fmt: skip
