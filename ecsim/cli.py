@@ -152,7 +152,7 @@ def _run(options: argparse.Namespace) -> int:
         print(terminal.page(session))
         if not reached:
             print(f"\n{options.until} did not come true")
-        return 0 if reached and not plc.system_error else 1
+        return 0 if reached and not plc.stopped_by else 1
     if not sys.stdin.isatty():
         raise EcsimError("there is no terminal for a live view; give --ms or --until")
     try:

@@ -13,10 +13,11 @@ from .editing import keep_memory, refusals
 from .engines import CompiledEngine
 from .errors import EcsimError
 from .monitor import Monitor
-from .project import Project, uploaded
+from .project import Project
 from .protection import KINDS, Protection
-from .states import alone
+from .states import INFORMATION, alone
 from .system import SystemBlock
+from .upload import unsealed, uploaded
 
 LARGEST_READING = 500  # D registers (2.4.7)
 
@@ -39,8 +40,8 @@ class Programming:
         """Download a program: its text, the path of an .il file or project folder, a Project, or a Program (2.4.1). A running PLC is stopped first.
 
         What a project sets comes with it: a system block and a data block take the place of those that are there, as a whole, and so do
-        passwords; what it says nothing about stays. Devices keep their values until RUN. A program that does not compile raises
-        ProgramError, and everything stays as it is, running if it ran.
+        passwords; what it says nothing about stays. Its `io` is for a Plc that was made without one; others keep what they have. Devices
+        keep their values until RUN. A program that does not compile raises ProgramError, and everything stays as it is, running if it ran.
         """
         self._need_power()
         project = None
@@ -50,7 +51,7 @@ class Programming:
             program = project.compile(self.model)
         self._check_model(program)
         self.protection.demand("download")
-        self._take_program(program, dict(project.files) if project else {"": program.source})
+        self._take_program(program, unsealed(project.files)[0] if project else {"": program.source})
         if project is not None:
             self._take_settings(project)
         return program
@@ -77,6 +78,8 @@ class Programming:
         if system.input_filter_ms is None:
             system.input_filter_ms = self.system.input_filter_ms
         self._settle(scan_ms, system)
+        if project.io is not None and self.modules.base is None and not self.modules:
+            self.modules.configure(project.io)
         if project.system is not None:
             self.health.happen("system block")
             self.health.happen("data block")
@@ -112,14 +115,16 @@ class Programming:
 
     @alone
     def upload(self) -> Project:
-        """The program, system block and data block as a Project (2.4.1). Units that a password closes come without their text.
+        """The program, system block and data block as a Project (2.4.1). Units that a password closes come sealed: they can be downloaded, not
+        read. Names of variables and comments are missing while the user information file is damaged (error 45).
 
         Raises EcsimError when the upload is forbidden, or closed by a password that has not been given.
         """
         if self.protection.passwords.forbid_upload:
             raise EcsimError("the upload was forbidden with the last download; download again with forbid_upload = false (2.1.11)")
         self.protection.demand("upload")
-        return Project(uploaded(self.program, self._files), model=self.model.name, scan_ms=self.scan_ms, system=copy.deepcopy(self.system))
+        files = uploaded(self.program, self._files, informed=INFORMATION not in self.health.damaged)
+        return Project(files, model=self.model.name, scan_ms=self.scan_ms, system=copy.deepcopy(self.system), io=self.modules.io)
 
     @alone
     def unlock(self, what: str, password: str) -> None:
@@ -127,6 +132,8 @@ class Programming:
 
         Raises EcsimError for a wrong one; ten in a row lock the entry for 5 minutes of simulated time.
         """
+        if not isinstance(what, str) or not isinstance(password, str):
+            raise EcsimError(f"unlock({what!r:.40}, {password!r:.40}): both are texts, what is opened and its password (2.1.11)")
         if what in KINDS:
             self.protection.enter(what, getattr(self.protection.passwords, what), password, self.time_us)
         else:
@@ -144,7 +151,7 @@ class Programming:
         begin as in the first scan. What hardware the others held is given back, a timer that none drives any longer stands still, and
         outputs whose coils are gone stay as they are. Raises EcsimError in STOP, and when variables or the set of units differ.
         """
-        files = None if isinstance(program, Program) else dict(Project.of(program).files)
+        files = None if isinstance(program, Program) else unsealed(Project.of(program).files)[0]
         program = self.check_edit(program)
         former, slots = self.program, self.memory.lists["E"]
         kept, gone = keep_memory(former, program)

@@ -2,7 +2,8 @@
 
 plc.toml                            *.il
 model = "EC20"                      the main program, subroutines, interrupt programs, VAR_GLOBAL;
-scan_ms = 10                        each file is read on its own
+io = [[24, 16], "4AD"]              each file is read on its own
+scan_ms = 10
 input_filter_ms = 10
 [system]                            hold_values, data_block_valid, watchdog_ms, constant_scan_ms, power_loss_ms, run_input,
 watchdog_ms = 200                   interrupt_priority, no_battery, format_lock
@@ -30,12 +31,13 @@ from pathlib import Path
 from typing import Any
 
 from .assembler import Program, assemble
-from .assembler.printer import print_globals, print_unit
 from .errors import EcsimError, Problem, ProgramError
+from .hardware.modules import check_io
 from .hardware.serial import PortSettings
 from .models import MODELS, Model, get_model
 from .protection import Passwords, check_unit_password
 from .system import SystemBlock, within
+from .upload import unsealed
 
 SETTINGS = "plc.toml"
 _SYSTEM = (
@@ -43,7 +45,7 @@ _SYSTEM = (
     "interrupt_priority", "no_battery", "format_lock",
 )  # fmt: skip
 _TABLES = ("system", "retain", "data_block", "stop_outputs", "port0", "port1", "modules", "passwords", "protected")
-_HEAD = ("model", "scan_ms", "input_filter_ms")
+_HEAD = ("model", "io", "scan_ms", "input_filter_ms")
 _PORT = tuple(field.name for field in fields(PortSettings))
 _PASSWORDS = tuple(field.name for field in fields(Passwords))
 
@@ -52,7 +54,7 @@ _PASSWORDS = tuple(field.name for field in fields(Passwords))
 class Project:
     """The files of a program by name, and the settings that are downloaded with them.
 
-    What is None is left as the PLC has it. Values may be changed, then `write` puts the project into a folder; comments and the
+    What is None is left as the PLC has it. `io` names the base unit and its modules, [(24, 16), (8, 8), "4AD"]. Values may be changed, then `write` puts the project into a folder; comments and the
     order of plc.toml stay. `protected` has the password of each unit whose text is closed (2.1.11).
     """
 
@@ -63,6 +65,7 @@ class Project:
     system: SystemBlock | None = None
     passwords: Passwords | None = None
     protected: dict[str, str] = field(default_factory=dict)
+    io: tuple | list | None = None
     toml: str = ""  # plc.toml as it was read
     origin: frozenset[Path] = frozenset()  # the .il files that it was read from
 
@@ -94,7 +97,7 @@ class Project:
         problems = project._take(toml)
         if problems:
             try:
-                assemble(project.files, project.model or "EC20")
+                assemble(unsealed(project.files)[0], project.model or "EC20")
             except ProgramError as error:
                 problems += error.problems
             raise ProgramError(problems)
@@ -104,8 +107,9 @@ class Project:
 
     def compile(self, model: str | Model | None = None) -> Program:
         """The program for a model (the project's own, EC20 when it names none); raises ProgramError with all errors."""
-        program = assemble(self.files, model or self.model or "EC20")
-        for name, password in self.protected.items():
+        texts, passwords = unsealed(self.files)
+        program = assemble(texts, model or self.model or "EC20")
+        for name, password in (passwords | self.protected).items():
             try:
                 program.unit(name).password = password
             except EcsimError as error:
@@ -116,6 +120,8 @@ class Project:
         """Raise EcsimError unless this is a project for the model, with settings that it has."""
         if self.model is not None and self.model != model.name:
             raise EcsimError(f"{self.name or 'this'} is a project for {self.model}, this is an {model.name}; make a Plc({self.model!r})")
+        if self.io is not None:
+            check_io(model, self.io)
         if self.scan_ms is not None:
             within("scan_ms", self.scan_ms, 0.001, 60_000)
         if self.system is not None:
@@ -249,7 +255,8 @@ class Project:
 
     def _flat(self) -> dict[tuple[str, str], Any]:
         """(table, key) -> value as plc.toml has it, of everything that is set."""
-        flat = {("", "model"): self.model, ("", "scan_ms"): self.scan_ms}
+        io = [list(each) if isinstance(each, tuple) else each for each in self.io] if self.io is not None else None
+        flat = {("", "model"): self.model, ("", "io"): io, ("", "scan_ms"): self.scan_ms}
         if (system := self.system) is not None:
             flat[("", "input_filter_ms")] = system.input_filter_ms
             flat |= {("system", key): getattr(system, key) for key in _SYSTEM}
@@ -276,14 +283,6 @@ class Project:
         return f"<Project {self.name or 'without a name'}, {self.model or 'any model'}, {count} file{'s' * (count != 1)}>"
 
 
-def uploaded(program: Program, files: dict[str, str]) -> dict[str, str]:
-    """The files of a program as they leave the machine: units that are closed by a password without their text (2.1.11)."""
-    if not any(unit.closed for unit in program.units):
-        return {name or "main.il": text for name, text in files.items()}
-    variables = [print_globals(program.variables.values())] if program.variables else []
-    return {"main.il": "\n".join([*variables, *(print_unit(unit, unit.closed) for unit in program.units)])}
-
-
 # -- texts and paths ------------------------------------------------------------------------------------------------
 
 
@@ -293,7 +292,7 @@ def _is_path(text: object) -> bool:
     commented = "//" in text and " " in text.strip()  # a rung with a comment, which may speak of a file
     if text.strip().lower().endswith(".il"):
         return not commented
-    return ("/" in text or "\\" in text) and "//" not in text and " " not in text.strip()
+    return os.path.isdir(text) or (("/" in text or "\\" in text) and "//" not in text and " " not in text.strip())
 
 
 def _text(path: Path) -> str:

@@ -55,7 +55,7 @@ class Protection:
 
     def enter(self, what: str, right: str, password: str, now_us: int) -> None:
         """Take a password for `what`; raises EcsimError for a wrong one, and for any while the entry is locked."""
-        if now_us < self.locked_until_us:
+        if self.locked_until_us - LOCKED_US <= now_us < self.locked_until_us:  # before that only where a step back has led
             left = -(-(self.locked_until_us - now_us) // 1_000_000)
             raise EcsimError(
                 f"no password is taken for another {left} s of simulated time: {TRIES} wrong ones were given in a row (2.1.11)"

@@ -319,6 +319,11 @@ class States:
         return next(iter(self.health.codes), self._halted)
 
     @property
+    def stopped_by(self) -> int:
+        """The error that keeps the PLC in STOP, 0 without one."""
+        return self.system_error if self.health.stopping else self._halted
+
+    @property
     def errors(self) -> list[MachineError]:
         """What SD3 and SD20 to SD24 say, in words, system errors first."""
         codes = [*self.health.codes, *([self._halted] if self._halted else [])]

@@ -16,7 +16,7 @@ FLOORS = (
     ("models",),  # data about devices, and nothing more
     ("memory", "hardware", "comms"),
     ("instructions",),
-    ("assembler", "project", "protection", "system"),
+    ("assembler", "project", "protection", "system", "upload"),
     ("engines", "editing", "saved", "states"),
     ("plc", "programming", "formats", "monitor"),
     ("views", "record", "conditions", "history", "network", "outside", "modbus", "verify", "scenario", "help"),

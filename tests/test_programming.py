@@ -155,6 +155,26 @@ def test_ten_wrong_passwords_in_a_row_lock_the_entry_for_five_minutes():
         plc.unlock("upload", "wrong")
 
 
+def test_a_lock_ends_where_a_step_back_leads_before_it():
+    plc = locked(monitor="m1")
+    before = plc.snapshot()
+    plc.advance(ms=60 * MINUTE)
+    for _ in range(10):
+        with pytest.raises(EcsimError, match="not the password"):
+            plc.unlock("monitor", "wrong")
+    plc.restore(before)
+    plc.unlock("monitor", "m1")
+
+
+@pytest.mark.parametrize(("what", "password"), [(5, "u1"), ("upload", 5), (None, None), ("upload", b"u1")])
+def test_what_is_no_text_is_no_try(what, password):
+    plc = locked(upload="u1")
+    with pytest.raises(EcsimError, match="both are texts"):
+        plc.unlock(what, password)
+    with pytest.raises(EcsimError, match="9 more tries"):
+        plc.unlock("upload", "wrong")
+
+
 def test_a_right_password_begins_the_count_anew():
     plc = locked(upload="u1")
     for _ in range(3):
@@ -171,11 +191,84 @@ def test_a_closed_subroutine_runs_but_its_text_stays_in_the_machine(tmp_path):
     assert plc["D0"] == 3
     text = plc.upload().files["main.il"]
     assert "MOV" not in text
-    assert "SUBROUTINE Secret\nVAR_INPUT A : INT\nCLOSED\nEND_SUBROUTINE" in text
+    assert "SUBROUTINE Secret\nVAR_INPUT A : INT\nCLOSED BY " in text
     assert "Lamp AT Y0" in text
-    plc.upload().write(tmp_path)
-    with pytest.raises(ProgramError, match=r"'CLOSED' is no instruction; a password closes this unit; upload it again after unlock\(\)"):
-        Plc().load(tmp_path)
+    assert "sub7" not in text
+
+
+def test_a_closed_subroutine_is_carried_to_another_machine_unread(tmp_path):
+    locked().upload().write(tmp_path)
+    other = machine()
+    other.load(tmp_path)
+    other.run()
+    other.scan()
+    assert (other["D0"], other.program.unit("Secret").closed) == (3, True)
+    assert "MOV" not in other.upload().files["main.il"]
+    other.unlock("Secret", "sub7")
+    assert other.upload().files["main.il"].endswith("SUBROUTINE Secret\nVAR_INPUT A : INT\n\nLD    SM0\nMOV   #A D0\nEND_SUBROUTINE\n")
+
+
+def test_a_sealed_text_may_be_in_a_change_in_run():
+    plc = locked()
+    plc.run()
+    project = plc.upload()
+    project.files["main.il"] = project.files["main.il"].replace("OUT   Lamp", "OUT   Y1")
+    plc.edit(project)
+    plc["X0"] = 1
+    plc.scan()
+    assert (plc["Y1"], plc["D0"], plc.program.unit("Secret").closed) == (1, 3, True)
+
+
+def test_errors_beside_a_sealed_unit_have_their_own_lines(tmp_path):
+    project = locked().upload()
+    project.files["main.il"] += "SUBROUTINE Last\nLD SM0\nBAD D0\nEND_SUBROUTINE\n"
+    line = project.files["main.il"].splitlines().index("BAD D0") + 1
+    with pytest.raises(ProgramError, match=f"main.il: line {line}, column 1: 'BAD' is no instruction"):
+        Plc().load(project)
+
+
+@pytest.mark.parametrize("spoilt", ["CLOSEDx", "CLOSED %%%%", "CLOSED TU9WICAgI0EgRD", "CLOSED /w==", "CLOSED BY %"])
+def test_a_spoilt_sealed_text_is_told_and_changes_nothing(spoilt):
+    project = locked().upload()
+    head, _, _ = project.files["main.il"].partition("CLOSED BY")
+    project.files["main.il"] = f"{head}{spoilt}\nEND_SUBROUTINE\n"
+    plc = machine()
+    program = plc.program
+    with pytest.raises(ProgramError, match="is no instruction"):
+        plc.load(project)
+    assert plc.program is program
+
+
+# -- what an upload has of names and comments (2.1.5, error 45) ------------------------------------------------------------
+
+
+def test_an_upload_without_user_information_has_no_names_and_comments():
+    plc = machine()
+    plc.load("VAR_GLOBAL\nLamp AT Y0 // shows it\nEND_VAR\n// the lamp\nLD X0 // a switch\nOUT lamp\nMOV 3 D0")
+    plc.battery = "absent"
+    plc.power_cycle()
+    assert 45 in [error.code for error in plc.errors]
+    assert plc.upload().files == {"main.il": "PROGRAM MAIN\nLD    X0\nOUT   Y0\nMOV   3 D0\nEND_PROGRAM\n"}
+    plc.stop()
+    plc["X0"] = 1
+    plc.run()
+    plc.scan()
+    assert (plc["Y0"], plc["D0"]) == (1, 3)
+    text = "LD X0 // again\nOUT Y0"
+    plc.load(text)
+    assert plc.upload().files == {"main.il": text}
+
+
+def test_closed_units_stay_closed_in_such_an_upload():
+    plc = locked()
+    plc.damage("user information")
+    text = plc.upload().files["main.il"]
+    assert ("Lamp" in text, "OUT   Y0" in text, "MOV" in text) == (False, True, False)
+    other = machine()
+    other.load(plc.upload())
+    other.run()
+    other.scan()
+    assert other["D0"] == 3
 
 
 def test_a_closed_subroutine_opens_with_its_password():
@@ -197,6 +290,13 @@ def test_nothing_is_cleared_in_run(what):
     with pytest.raises(EcsimError, match=rf"the {what} can be cleared in STOP only; stop\(\) the PLC first"):
         plc.clear(what)
     assert (plc["D0"], plc.program.steps) == (5, 2)
+
+
+@pytest.mark.parametrize("act", [lambda plc: plc.clear("devices"), lambda plc: plc.format()])
+def test_the_ports_stay_idle_when_all_is_cleared(act):
+    plc = machine()
+    act(plc)
+    assert (plc["SM114"], plc["SM124"]) == (1, 1)
 
 
 def test_clearing_the_devices_spares_program_settings_inputs_and_forces():

@@ -134,6 +134,57 @@ def test_system_block_and_data_block_come_with_the_download(press):
     assert plc["Y0"] == 1
 
 
+def test_base_unit_and_modules_are_those_of_the_project(press):
+    text = TOML.replace("scan_ms = 5", 'io = [[24, 16], [8, 8], "4AD"]  # cabinet 2\nscan_ms = 5')
+    (press / "plc.toml").write_text(text)
+    plc = Plc("EC10")
+    plc.load(press)
+    assert (plc["SD7"], plc["SD8"], plc["SD10"]) == (1, 1, 24 << 8 | 16)
+    plc.run()
+    plc.scan()
+    assert plc.errors == []
+    with pytest.raises(EcsimError, match="X40 has no terminal"):
+        plc["X40"] = 1
+    plc.unlock("upload", "Sesam1")
+    project = plc.upload()
+    assert project.io == [(24, 16), (8, 8), "4AD"]
+    project.write(press / "copy")
+    assert Project.read(press / "copy").io == [[24, 16], [8, 8], "4AD"]
+    former = Project.read(press)
+    former.write(press)
+    assert (press / "plc.toml").read_text() == text
+    former.io = ((24, 16), "4DA")
+    former.write(press)
+    assert (press / "plc.toml").read_text() == text.replace('[8, 8], "4AD"', '"4DA"')
+
+
+def test_a_download_changes_no_hardware_that_there_is(press):
+    (press / "plc.toml").write_text('model = "EC10"\nio = [[24, 16], "4AD"]\n')
+    plc = Plc("EC10", io=(10, 6))
+    plc.load(press)
+    assert plc.modules.io == [(10, 6)]
+    bare = Plc("EC20")
+    bare.modules.add("4DA")
+    bare.load(Project({"main.il": LAMP}, io=(24, 16)))
+    assert (bare["SD8"], bare["SD10"]) == (1, 0)
+
+
+def test_hardware_that_there_is_not_leaves_everything_as_it_was():
+    plc = Plc("EC20")
+    program = plc.program
+    with pytest.raises(EcsimError, match="EC20 has no base unit"):
+        plc.load(Project({"main.il": LAMP}, io=[(24, 16, 3)]))
+    with pytest.raises(EcsimError, match="EC20 has room for 8 modules"):
+        plc.load(Project({"main.il": LAMP}, io=[(24, 16), *["4AD"] * 9]))
+    assert (plc.program, plc.modules.io, len(plc.modules)) == (program, None, 0)
+
+
+def test_the_name_of_a_folder_alone_is_a_path(press, monkeypatch):
+    monkeypatch.chdir(press.parent)
+    assert Project.of(press.name).model == "EC10"
+    assert Project.of("LD X0").files == {"": "LD X0"}
+
+
 def test_variables_have_a_file_of_their_own(folder):
     (folder / "variables.il").write_text("VAR_GLOBAL\nStart AT X0 // button\nEND_VAR\n")
     (folder / "main.il").write_text("LD Start\nOUT Y0\n")
@@ -200,7 +251,11 @@ def test_a_folder_with_the_name_of_a_file_is_a_project(tmp_path):
     [
         ("model = EC20", 1, 'this is no TOML: Invalid value; write lines like model = "EC20"'),
         ("scan_ms = 5\n\n[system\n", 3, "this is no TOML: "),
-        ("modell = 'EC20'", 1, "there is no setting 'modell'; known are model, scan_ms, input_filter_ms, system"),
+        ("modell = 'EC20'", 1, "there is no setting 'modell'; known are model, io, scan_ms, input_filter_ms, system"),
+        ("io = 5", 1, "io is 5; write (inputs, outputs) of a base unit"),
+        ("io = [24, 17]", 1, "EC20 has no base unit [24, 17]; choose (inputs, outputs) of (10, 6), (14, 10)"),
+        ("io = [[24, 16], '9AD']", 1, "EC20 has no special module '9AD'; it has"),
+        ("model = 'EC10'\n\nio = [[24, 16], [200, 0]]", 3, "EC10 has at most 128 points"),
         ("model = 20", 1, "model is 20; choose EC10 or EC20"),
         ("model = []", 1, "model is []; choose EC10 or EC20"),
         ("model = 'EC10'\nscan_ms = 'fast'", 2, "scan_ms is 'fast'; it is a number from 0.001 to 60000"),

@@ -210,6 +210,25 @@ def test_an_error_that_stops_the_plc_ends_with_1(tmp_path, capsys):
     assert re.search(r"STOP .*ERR on", capsys.readouterr().out)
 
 
+def test_an_error_that_stops_nothing_ends_with_0(tmp_path, capsys):
+    (tmp_path / "plc.toml").write_text('model = "EC10"\n[modules.0]\nkind = "4AD"\n')
+    (tmp_path / "main.il").write_text("LD SM0\nINC D0\n")
+    assert main(["run", str(tmp_path), "--ms", "50"]) == 0
+    out = capsys.readouterr().out
+    assert "26: the special modules are not those of the system block" in out
+    assert "EC10 RUN" in out
+
+
+def test_a_run_has_the_base_unit_and_the_modules_of_the_project(tmp_path, capsys):
+    (tmp_path / "plc.toml").write_text('model = "EC10"\nio = [[24, 16], [8, 8], "4AD"]\n[modules.0]\nkind = "4AD"\n')
+    (tmp_path / "main.il").write_text("LD X30\nOUT Y20\nLD SM0\nMOV SD7 D0\nMOV SD8 D1\n")
+    assert main(["run", str(tmp_path), "--ms", "50", "--set", "X30=1", "--until", "D1"]) == 0
+    out = capsys.readouterr().out
+    assert "Errors" not in out
+    assert main(["run", str(tmp_path), "--ms", "50", "--set", "X40=1"]) == 2
+    assert "X40 has no terminal" in capsys.readouterr().err
+
+
 def test_a_program_with_errors_ends_with_1_and_lists_them(tmp_path, capsys):
     (tmp_path / "a.il").write_text("LD X0\nOUT X0\nTON T0")
     (tmp_path / "plc.toml").write_text("[system]\nwatchdog_ms = 9999\n")

@@ -24,7 +24,7 @@ FOREIGN = {
     **{f"{join}P": f"write {join} and EU behind the contacts" for join in ("LD", "AND", "OR")},
     **{f"{join}F": f"write {join} and ED behind the contacts" for join in ("LD", "AND", "OR")},
     "PLF": "write ED before OUT",
-    "CLOSED": "a password closes this unit; upload it again after unlock()",
+    "CLOSED": "a password closes this unit, and what stands for its text is spoilt; upload it again",
 }  # fmt: skip
 
 __all__ = ["Instruction", "Network", "Program", "Region", "Unit", "Variable", "assemble"]

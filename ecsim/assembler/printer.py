@@ -28,15 +28,15 @@ def print_program(program: Program) -> str:
     return "\n".join(parts)
 
 
-CLOSED = "CLOSED"  # what stands for the instructions of a unit that a password closes; it does not compile
+CLOSED = "CLOSED"  # begins each line that stands for the text of a unit that a password closes; it does not compile
 
 
-def print_unit(unit: Unit, closed: bool = False) -> str:
-    """One unit between its header and its end; when closed without its instructions."""
+def print_unit(unit: Unit, sealed: str = "") -> str:
+    """One unit between its header and its end; `sealed` stands for its instructions where it is closed."""
     word = "PROGRAM" if unit.kind == "MAIN" else unit.kind
     head = f"{word} {unit.name}" + (f" EVENT {unit.event}" if unit.event is not None else "")
     rows = [(f"VAR_{v.role} {v.name} : {v.type.name}", v.comment) for v in unit.variables.values()]
-    return "\n".join([head, *_with_comments(rows), (f"{CLOSED}\n" if closed else print_unit_body(unit)) + f"END_{word}\n"])
+    return "\n".join([head, *_with_comments(rows), (sealed or print_unit_body(unit)) + f"END_{word}\n"])
 
 
 def print_unit_body(unit: Unit) -> str:

@@ -277,6 +277,12 @@ class AnalogModule(Module):
         return f"<AnalogModule {self.kind}>"
 
 
+def check_io(model: Model, io: Any) -> None:
+    """Raise EcsimError unless a model has the base unit and the modules that `io` names."""
+    memory = Memory(model)
+    Rack(memory, SystemErrors(memory, []), Supply(memory, []), [], [0]).configure(io)
+
+
 def points(inputs: Any, outputs: Any) -> tuple[int, int]:
     """Numbers of inputs and outputs; raises EcsimError for what is none."""
     for count in (inputs, outputs):
@@ -377,6 +383,14 @@ class Rack(Unit):
         self.changed()
         for each in others:
             self.add(each)
+
+    @property
+    def io(self) -> list | None:
+        """What `configure` would build all this from; None without a base unit, and with modules that have no name for it."""
+        kinds = [module.kind for module in self.modules.values()]
+        if self.base is None or list(self.modules) != list(range(len(kinds))) or not self.model.module_kinds.keys() >= set(kinds):
+            return None
+        return [self.base, *((module.inputs, module.outputs) for module in self.digital), *kinds]
 
     def add(self, module: Any) -> Extension:
         """Put a module at the end of the bus: (inputs, outputs), the name of a special module, or a module; gives the module."""

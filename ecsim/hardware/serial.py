@@ -216,6 +216,7 @@ class Port(Unit, End):
         self.put("end character", settings.end_char or 0)
         self.put("gap timeout", settings.gap_timeout_ms)
         self.put("frame timeout", settings.frame_timeout_ms)
+        self.tell("idle", not self.protocol.busy)
         self.put("station", settings.station)
         self.put("timeout", settings.delay_ms if settings.protocol == "ecbus" else settings.timeout_ms)
         self.put("refresh mode", settings.refresh_mode if settings.protocol == "ecbus" else 0)
