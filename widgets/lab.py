@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +13,7 @@ from ecsim.plc import Plc
 from ecsim.session import Session
 
 from .chart import Chart
+from .devices import Devices
 from .history import Watch
 from .ladder import Ladder
 from .machine import Machine
@@ -22,7 +23,7 @@ from .timers import Timers
 from .transport import Transport
 from .unit import Unit
 
-PARTS = {part.key: part for part in (Transport, Unit, Machine, Chart, Ladder, Timers)}
+PARTS = {part.key: part for part in (Transport, Unit, Machine, Chart, Ladder, Timers, Devices)}
 
 
 def parts_of(rig: Rig) -> list[str]:
@@ -36,6 +37,7 @@ class Lab(Panel):
 
     `model` is a model's name or a Plc, `program` what `Plc.load` takes, `plant` a machine with `wiring` and `step`,
     `picture` its drawing. `controls` says what drives an input: "switch" (the default), "push", "latch" or "stop".
+    `devices` are watched in the device table, ["D0", "D100-D120:REAL"]; without it those that the program names.
     A lab of the same `name` is stopped and closed first, so running a cell again leaves one simulation.
     `speed` is times real time, None as fast as it goes; `autostart=False` leaves it paused. Raises ProgramError.
     """
@@ -54,6 +56,7 @@ class Lab(Panel):
         autostart: bool = True,
         controls: Mapping[str, str] | None = None,
         title: str = "",
+        devices: Iterable[str] = (),
     ):
         plc = model if isinstance(model, Plc) else Plc(model)
         if program is not None:
@@ -65,7 +68,7 @@ class Lab(Panel):
             self._labs[name].close()
         self.name = name
         title = title or re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(plant).__name__) if plant is not None else ""
-        rig = Rig(plc, session, watch, terminals=terminals, picture=picture, controls=controls, title=title)
+        rig = Rig(plc, session, watch, terminals=terminals, picture=picture, controls=controls, title=title, devices=devices)
         super().__init__(rig)
         self._labs[name] = self
         plc.tracing = True
@@ -91,7 +94,7 @@ class Lab(Panel):
         return self.rig.session
 
     def panel(self, key: str) -> Panel:
-        """One panel of this lab alone: "transport", "unit", "machine", "chart", "ladder" or "timers"."""
+        """One panel of this lab alone: "transport", "unit", "machine", "chart", "ladder", "timers" or "devices"."""
         there = parts_of(self.rig)
         if key not in there:
             raise ValueError(f"there is no panel {key!r} here; there are {', '.join(there)}")

@@ -242,7 +242,7 @@ class View {
       const place = document.createElement("div");
       place.className = `area area-${part}`;
       if (part === "transport" || parts.length === 1) grid.prepend(place);
-      else grid.querySelector(part === "chart" || part === "timers" ? ".lab-b" : ".lab-a").append(place);
+      else grid.querySelector(["chart", "timers", "devices"].includes(part) ? ".lab-b" : ".lab-a").append(place);
       this.parts[part] = panels[part](place, layouts[part] ?? {}, this.page, this);
     }
     if (parts.length > 1) {

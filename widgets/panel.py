@@ -17,8 +17,8 @@ from .history import changes
 from .rig import Rig
 from .stream import Stream
 
-SCRIPTS = ("panel", "transport", "unit", "machine", "chart", "ladder", "timers")
-STYLES = ("panel", "transport", "unit", "chart", "timers", "lab")
+SCRIPTS = ("panel", "plate", "transport", "unit", "machine", "chart", "ladder", "timers", "devices")
+STYLES = ("panel", "plate", "transport", "unit", "chart", "timers", "devices", "lab")
 
 
 def _together(folder: resources.abc.Traversable, names: Iterable[str], ending: str) -> str:

@@ -48,7 +48,7 @@ def test_what_is_there_already_is_not_added_twice(table):
         ("D0-X5", "range"),
         ("", "name a device"),
         ("D0 Q1", "Q1"),
-        ("C198-C202:INT", "C200"),
+        ("C198-C202:INT", "C202"),
         ("X0:REAL", "REAL"),
     ],
 )
