@@ -262,6 +262,8 @@ class Plc(Programming, States):
         now = self.clock[0]
         if not self.running and not self._rest(now):
             return now + self.period_us
+        if self._tracing and self.running:
+            self._engine.begin_scan()
         if self.interrupts.queue:
             self._serve_queue()
         if self.inputs.changed:

@@ -63,6 +63,10 @@ class SteppingEngine:
         self.lines: dict[str, int] = {}  # generated function -> the student's line
         _Builder(self).build()
 
+    def begin_scan(self) -> None:
+        """What is recorded from now on belongs to a new scan: interrupt programs before the main program, too."""
+        self.trace = Trace.blank(self.length)
+
     def scan(self) -> bool:
         """Execute the main program once; true when it stopped the PLC."""
         return self.run(self.program.main.name)
@@ -74,8 +78,6 @@ class SteppingEngine:
     def run(self, unit: str) -> bool:
         """Execute a unit once, recorded when `recording` is set."""
         if self.recording:
-            if unit.upper() == self.program.main.name.upper():
-                self.trace = Trace.blank(self.length)
             flow, writes, order = self.trace.flow, self.trace.writes, self.trace.order
             for position in self.walk(unit):
                 order.append((position, flow[position], len(writes)))

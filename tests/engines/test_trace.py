@@ -101,6 +101,16 @@ def test_what_a_call_brings_back_is_told_of_the_call():
     assert (10, "D9", 0, 4) in writes(plc)
 
 
+def test_what_an_interrupt_writes_before_the_main_program_belongs_to_the_same_scan():
+    plc = traced("PROGRAM MAIN\nLD SM1\nEI\nSET SM40\nEND_PROGRAM\nINTERRUPT EDGE EVENT 0\nLD SM0\nINC D0\nEND_INTERRUPT")
+    plc.scan()
+    plc["X0"] = 1  # asks for the interrupt program, which runs as the next scan begins
+    plc.scan()
+    assert writes(plc) == [(8, "D0", 0, 1)]
+    plc.scan()
+    assert writes(plc) == []
+
+
 @pytest.mark.parametrize("seed", range(12))
 def test_every_change_of_a_scan_is_told(seed):
     """Random programs: whatever a scan has changed, a write with that last value tells of it."""
