@@ -57,6 +57,7 @@ class Network:
     def __init__(self, **plcs: Plc):
         self.time_us = 0
         self.members: dict[str, Member] = {}
+        self._stale: set[str] = set()  # members whose next moment may have changed
         for name, plc in plcs.items():
             self.add(name, plc)
 
@@ -136,7 +137,12 @@ class Network:
         return self.time_us
 
     def stirred(self) -> None:
-        """A wire has changed; the network asks all of them anyway."""
+        """A wire has changed: all are asked again when they go on."""
+        self._stale.update(self.members)
+
+    def reached(self, port: Any) -> None:
+        """A member has heard something: it is asked again when it goes on."""
+        self._stale.add(port.name.rpartition(".")[0])
 
     def advance(self, ms: float) -> None:
         """Simulated time goes on by `ms` milliseconds for all members. Raises EcsimError when one was moved on its own."""
@@ -154,19 +160,28 @@ class Network:
                     member.look()
 
     def _go_on(self, end: int) -> None:
-        members, wires = self.members, self.wires
+        members, wires, stale = self.members, self.wires, self._stale
+        moments: dict[str, tuple[int, int, str]] = {}
+        stale.update(members)
         while True:
-            moments = [(*member.next(), name) for name, member in members.items()]
-            moments += [(moment, EVENT, name) for name, wire in wires.items() if (moment := wire.next()) is not None]
-            moments = [entry for entry in moments if entry[0] < end or (entry[0] == end and entry[1] != SCAN_BEGIN)]
-            if not moments:
+            for name in stale:
+                moments[name] = (*members[name].next(), name)
+            stale.clear()
+            first = min(moments.values(), default=(end, SCAN_BEGIN, ""))
+            for name, wire in wires.items():
+                due = wire.next()
+                if due is not None and (due, EVENT, name) < first:
+                    first = due, EVENT, name
+            if first >= (end, SCAN_BEGIN):  # no scan begins at the end
                 break
-            moment, what, name = min(moments)
+            moment, what, name = first
             self.time_us = max(self.time_us, moment)
             if name in members:
                 members[name].go_on(moment, what)
+                stale.add(name)
             else:
                 wires[name].act(moment)
+                stale.update(members)  # an instrument may do to them what it likes
         self.time_us = end
 
     # -- going back ---------------------------------------------------------------------------------------------

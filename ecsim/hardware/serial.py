@@ -253,6 +253,8 @@ class Port(Unit, End):
         if self.powered:
             self.heard.append((max(at, self.clock[0]), byte, wrong))  # nothing is heard before one's own time
             self.wake()
+            if self.network is not None:
+                self.network.reached(self)
 
     # -- the unit -----------------------------------------------------------------------------------------------
 
