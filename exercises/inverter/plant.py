@@ -31,7 +31,7 @@ from ecsim.comms.inverter import (
     WRITE,
 )
 
-from ..plant import Point
+from ..plant import Faulty, Point
 
 # Appendix 5.
 FUNCTION, REGISTER, LIMITS, FAILED, IN_PROGRESS, BUSY = range(1, 7)
@@ -84,7 +84,7 @@ class _Refused(Exception):
 
 
 @dataclass
-class Inverter:
+class Inverter(Faulty):
     """The inverter. `load` is the torque on the motor's shaft as a share of the rated one; more than 1.5 trips it by itself."""
 
     station: int = 1
@@ -122,9 +122,7 @@ class Inverter:
 
     def fail(self, fault: str, on: bool = True) -> None:
         """Switch a fault in, or out again; a trip stays until it is reset. Raises EcsimError for one that it does not have."""
-        if fault not in self.FAULTS:
-            raise EcsimError(f"an inverter has no fault {fault!r}; it has {', '.join(self.FAULTS)}")
-        self.faults = self.faults | {fault} if on else self.faults - {fault}
+        super().fail(fault, on)
         if on and fault in TRIPS:
             self._trip(fault)
 

@@ -203,7 +203,7 @@ def test_it_keeps_silent_to_others_to_rubbish_and_to_a_broadcast_which_it_obeys(
 
 
 def test_what_it_does_not_have_is_refused_in_words():
-    with pytest.raises(EcsimError, match="an inverter has no fault 'rust'; it has silent, garbled"):
+    with pytest.raises(EcsimError, match="this machine has no fault 'rust'; it has silent, garbled"):
         Inverter().fail("rust")
     with pytest.raises(EcsimError, match="station 0 of an inverter; it is 1 to 247"):
         Inverter(station=0)
