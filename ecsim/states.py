@@ -9,6 +9,7 @@ from .assembler.inputs import occupied
 from .errors import EcsimError
 from .hardware.faults import ERRORS, LAMPS, Faults, SystemErrors
 from .hardware.interrupts import POWER_LOSS
+from .hardware.serial import Port
 from .hardware.supply import Supply
 from .system import within
 
@@ -49,13 +50,17 @@ class States:
     faults: Faults
     health: SystemErrors
     supply: Supply
+    ports: list[Port]
     power_ups = 0  # how often it has started up since it was made
 
     # -- RUN and STOP -------------------------------------------------------------------------------------------
 
     @property
     def switch(self) -> str:
-        """The mode switch: "ON", "TM" or "OFF". Turned to ON it puts the PLC into RUN, turned to OFF into STOP (2.3.2)."""
+        """The mode switch: "ON", "TM" or "OFF". Turned to ON it puts the PLC into RUN, turned to OFF into STOP (2.3.2).
+
+        At TM port 0 speaks the programming protocol, whatever the system block says (10.1).
+        """
         return self._switch
 
     @switch.setter
@@ -65,6 +70,7 @@ class States:
         if turned not in SWITCH:
             raise EcsimError(f"the mode switch has no position {position!r}; choose {' or '.join(SWITCH)}")
         before, self._switch = self._switch, turned
+        self.ports[0].reserve(turned == "TM")
         if turned == "OFF":
             self.stop()
         elif turned == "ON" and before != "ON" and self.supply.powered:

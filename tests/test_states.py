@@ -10,6 +10,7 @@ import pytest
 
 from ecsim import EcsimError, Plc, Session, SystemBlock
 from ecsim.hardware.faults import ERRORS
+from ecsim.hardware.serial import PortSettings
 
 MODELS = ["EC10", "EC20"]
 COUNTING = "LD SM0\nINC D0\nOUT Y0"
@@ -72,6 +73,74 @@ def test_the_software_starts_at_tm_and_on_but_not_at_off():
         plc.run()
     plc.stop()
     assert not plc.running
+
+
+class Echo:
+    """An instrument that keeps what it hears."""
+
+    def __init__(self):
+        self.heard = []
+
+    def hear(self, message):
+        self.heard.append(message)
+
+
+def free_port():
+    """A PLC that sends a character over port 0 as long as M0 is ON, and receives."""
+    plc = plc_with("LD M0\nXMT 0 D0 1\nLD M1\nRCV 0 D10 5", port0=PortSettings("freeport"))
+    plc["D0"] = 0x41
+    plc.ports[0].connect(Echo())
+    return plc, plc.ports[0].wire.stations[0].instrument
+
+
+def test_at_tm_port_0_speaks_the_programming_protocol_only():
+    plc, echo = free_port()
+    plc.set({"M0": 1, "M1": 1})
+    plc.scan(2)
+    assert (echo.heard, plc["SM111"], plc["SM114"]) == ([b"A"] * 2, 1, 0)
+    plc.switch = "TM"
+    assert (plc["SM111"], plc["SM114"]) == (0, 1)  # what went on has ended
+    plc.scan(5)
+    assert (plc.running, echo.heard) == (True, [b"A"] * 2)
+    assert repr(plc.ports[0]) == "<Port 0 programming>"
+    plc.switch = "ON"
+    plc.scan(2)
+    assert (echo.heard, plc["SM111"]) == ([b"A"] * 4, 1)
+
+
+def test_at_tm_a_slave_on_port_0_does_not_answer_and_on_port_1_does():
+    slave = PortSettings("modbus slave", station=1)
+    plc = plc_with(port0=slave, port1=slave)
+    frame = bytes.fromhex("010300000001840a")  # D0, with the CRC of 10.4.9's kind
+    answers = []
+    for port in plc.ports:
+        port.connect(Echo())
+    for position in ("ON", "TM", "ON"):
+        plc.switch = position
+        before = [len(port.wire.log) for port in plc.ports]
+        for port in plc.ports:
+            port.wire.stations[0].send(frame, plc.time_us)
+            port.stirred()
+        plc.scan(5)
+        answers.append([len(port.wire.log) - count - 1 for port, count in zip(plc.ports, before, strict=True)])
+    assert answers == [[1, 1], [0, 1], [1, 1]]
+
+
+def test_what_the_switch_makes_of_port_0_outlives_power_a_new_system_block_and_the_way_back(tmp_path):
+    plc, echo = free_port()
+    kept = plc.snapshot()
+    plc.switch = "TM"
+    at_tm = plc.snapshot()
+    plc.save(tmp_path / "tm.ecplc")
+    plc.power_cycle()
+    plc.run()
+    plc["M0"] = 1
+    plc.scan(3)
+    assert echo.heard == []
+    plc.restore(kept)
+    assert repr(plc.ports[0]) == "<Port 0 freeport>"
+    plc.restore(at_tm)
+    assert repr(plc.ports[0]) == repr(Plc.open(tmp_path / "tm.ecplc").ports[0]) == "<Port 0 programming>"
 
 
 def test_a_position_that_the_switch_does_not_have_is_refused():

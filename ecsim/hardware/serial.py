@@ -162,14 +162,27 @@ class Port(Unit, End):
         self.name = f"port {number}"
         self.map = memory.model.ports[number]
         self.powered = True
+        self.reserved = False
         self.set_up(None)
 
     def set_up(self, settings: PortSettings | None) -> None:
         """Take over the settings of the system block; None leaves the port as the unit comes."""
         self.settings = settings or PortSettings(self.map.protocols[0])
-        End.__init__(self, self.settings.framing)
+        self._begin()
+
+    def reserve(self, on: bool) -> None:
+        """Keep the port for the programming software, whatever the system block says (10.1), or give it back."""
+        if on != self.reserved:
+            self.protocol.begin(self.clock[0])  # ends what goes on
+            self.reserved = on
+            self._begin()
+            self.restart(self.clock[0])
+
+    def _begin(self) -> None:
+        settings = PortSettings("programming") if self.reserved else self.settings
+        End.__init__(self, settings.framing)
         self.heard: deque[tuple[int, int, bool]] = deque()  # (when, byte, wrong)
-        self.protocol = self.protocols.get(self.settings.protocol, Protocol)(self)
+        self.protocol = self.protocols.get(settings.protocol, Protocol)(self)
         self.stirred()
 
     def power(self, on: bool) -> None:
@@ -310,11 +323,12 @@ class Port(Unit, End):
         stations = self.drives
         return (
             self.powered, self.sent_so_far(), list(self.heard), self.protocol.snapshot(),
-            None if stations is None else stations.snapshot(), self.clock[0],
+            None if stations is None else stations.snapshot(), self.clock[0], self.reserved,
         )  # fmt: skip
 
     def restore(self, snapshot: tuple) -> None:
-        self.powered, sent, heard, protocol, stations, now = snapshot
+        self.powered, sent, heard, protocol, stations, now, reserved = snapshot
+        self.reserve(reserved)
         self.send_on(sent)
         self.heard = deque(map(tuple, heard))
         self.protocol.restore(protocol)
@@ -323,4 +337,4 @@ class Port(Unit, End):
         self.stirred()
 
     def __repr__(self) -> str:
-        return f"<Port {self.number} {self.settings.protocol}>"
+        return f"<Port {self.number} {'programming' if self.reserved else self.settings.protocol}>"
