@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from itertools import groupby
 from typing import Any
@@ -62,21 +62,6 @@ class Pulses:
         pulsed = sorted(self._seen - now - self._before)
         self._before, self._seen = now, set()
         return pulsed
-
-
-class Watch:
-    """Stands in the session where a recording may stand, and so is told of every scan."""
-
-    def __init__(self):
-        self.watchers: list[Callable[[], None]] = []
-
-    def sample(self) -> None:
-        """A scan is over."""
-        for watcher in self.watchers:
-            watcher()
-
-    def forget(self, time_us: int) -> None:
-        """The session has gone back; watchers look at the present only."""
 
 
 def changes(before: Mapping[str, object], now: Mapping[str, object]) -> dict[str, object]:

@@ -14,7 +14,6 @@ from ecsim.session import Session
 
 from .chart import Chart
 from .devices import Devices
-from .history import Watch
 from .ladder import Ladder
 from .machine import Machine
 from .panel import Panel, Part
@@ -62,16 +61,15 @@ class Lab(Panel):
         if program is not None:
             plc.load(program)
         terminals = Terminals(plant) if plant is not None else None
-        watch = Watch()
-        session = Session(plc, plant=terminals, name=name, speed=speed, record=watch)
+        session = Session(plc, plant=terminals, name=name, speed=speed)
         if name in self._labs:
             self._labs[name].close()
         self.name = name
         title = title or re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(plant).__name__) if plant is not None else ""
-        rig = Rig(plc, session, watch, terminals=terminals, picture=picture, controls=controls, title=title, devices=devices)
+        rig = Rig(plc, session, terminals=terminals, picture=picture, controls=controls, title=title, devices=devices)
         super().__init__(rig)
         self._labs[name] = self
-        plc.tracing = True
+        session.trace_frames = True
         if autostart:
             session.run()
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import copy
 import re
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -16,7 +16,7 @@ from ecsim.assembler.program import Instruction
 from ecsim.devices import Bits, Constant, number_text
 from ecsim.errors import EcsimError
 
-from .history import StepTimes, Watch
+from .history import StepTimes
 from .table import Table
 
 PREFIX = "EC0-"  # of all ids in a drawing; the page makes it unique for each view
@@ -42,9 +42,13 @@ class Terminals:
         self.plant = plant
         self.wiring: Mapping[str, Any] = plant.wiring
         self.stuck: dict[str, int] = {}
-        outputs = {device: 0 for device in self.wiring if device.startswith("Y")}
-        self.inputs: dict[str, int] = plant.step(0.0, outputs)  # no time passes: it tells what its sensors say
-        self.driven = frozenset(self.inputs)
+        self.counted = getattr(plant, "counted", frozenset())  # outputs of which it gets the number of pulses
+        self.inputs: dict[str, int] = {}  # what its sensors said last; the session asks before any time passes
+
+    @property
+    def driven(self) -> Collection[str]:
+        """The inputs that the machine drives."""
+        return self.inputs.keys()
 
     def step(self, seconds: float, outputs: Mapping[str, int]) -> dict[str, int]:
         """Move the machine on; gives the levels at the terminals that it drives."""
@@ -73,7 +77,6 @@ class Rig:
         self,
         plc: Any,
         session: Any,
-        watch: Watch,
         *,
         terminals: Terminals | None = None,
         picture: Any = None,
@@ -81,13 +84,13 @@ class Rig:
         title: str = "Machine",
         devices: Iterable[str] = (),
     ):
-        self.plc, self.session, self.watch, self.terminals = plc, session, watch, terminals
+        self.plc, self.session, self.terminals = plc, session, terminals
         self.wiring = terminals.wiring if terminals else {}
         self.picture, self.title = picture, title
         self.controls = dict(controls or {})
         self.refused = ""  # why the last thing asked for was not done
         self.recent: deque[int] = deque(maxlen=RECENT)
-        watch.watchers.append(self._note_scan)
+        session.each_scan(self._note_scan)
         self.table = Table(plc, self.point)
         for text in devices:
             self.table.add(text)
@@ -200,13 +203,21 @@ class Rig:
             "plant": session.plant_on if self.terminals else None,
             "can_back": session.history.first is not None and session.history.first < plc.scans,
             "error": f"{type(session.error).__name__}: {session.error}" if session.error else "",
-            "refused": self.refused,
+            "refused": self.refused or session.refused,
+            "hit": session.hit.text if session.hit and session.state == "paused" else "",
+            "held": int(session.transitions_held),
+            "back": session.tip.scan - plc.scans,
+            "back_us": session.tip.time_us - plc.time_us,
             "fault": f"Error {errors[0].code}, {errors[0].meaning}" if errors else "",
         }
 
     def machine_moment(self) -> Moment:
-        """What the machine's picture is drawn from: the tags show the unit's terminals."""
-        inputs = {device: self.terminal(device) for device in self.wiring if device.startswith("X")}
+        """What the machine's picture is drawn from: the tags show the unit's terminals; other devices (M2, D2) stand with the inputs."""
+        inputs = {
+            device: self.terminal(device) if device.startswith("X") else self.plc[device]
+            for device in self.wiring
+            if not device.startswith("Y")
+        }
         outputs = {device: self.bit(device) for device in self.wiring if device.startswith("Y")}
         return Moment(self.terminals.plant, inputs, outputs)
 

@@ -18,7 +18,7 @@ class Unit(Part):
         self.points = {device: rig.point(device) for device in (*rig.inputs, *rig.outputs)}
         self._pulses = Pulses()
         self._image: tuple[list, list] | None = None
-        rig.watch.watchers.append(self._watch)
+        self._leave = rig.session.each_scan(self._watch)
 
     def layout(self):
         rows = {device: {"device": device, "name": name, "what": what} for device, (name, what) in self.points.items()}
@@ -58,7 +58,7 @@ class Unit(Part):
             self._release(device)
 
     def close(self):
-        self.rig.watch.watchers.remove(self._watch)
+        self._leave()
 
     def _device(self, device):
         if device not in self.points:

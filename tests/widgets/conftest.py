@@ -3,7 +3,6 @@
 from typing import NamedTuple
 
 import pytest
-from ecsim_widgets.history import Watch
 from ecsim_widgets.rig import Rig, Terminals
 
 from ecsim.plc import Plc
@@ -79,12 +78,11 @@ def make_rig():
     def make(plant=None, program=PROGRAM, **more):
         plc = Plc("EC20", scan_ms=10, input_filter_ms=0)
         plc.load(program)
-        plc.tracing = True
         terminals = Terminals(plant) if plant else None
-        watch = Watch()
-        session = Session(plc, plant=terminals, name="test", record=watch)
+        session = Session(plc, plant=terminals, name="test")
+        session.trace_frames = True
         plc.run()
-        return Rig(plc, session, watch, terminals=terminals, **more)
+        return Rig(plc, session, terminals=terminals, **more)
 
     return make
 
