@@ -17,7 +17,7 @@ from .history import changes
 from .rig import Rig
 from .stream import Stream
 
-SCRIPTS = ("panel", "plate", "transport", "unit", "machine", "chart", "ladder", "timers", "devices")
+SCRIPTS = ("panel", "il", "plate", "transport", "unit", "machine", "chart", "ladder", "timers", "devices")
 STYLES = ("panel", "plate", "transport", "unit", "chart", "timers", "devices", "lab")
 
 

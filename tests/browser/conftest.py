@@ -153,11 +153,11 @@ class Notebook:
 
 @pytest.fixture(scope="session")
 def open_notebook(root, server, browser):
-    """Open a copy of a notebook, each with a kernel of its own: the session is ready and connected when this returns."""
+    """Open a copy of a notebook (of notebooks/, or any by its whole path), each with a kernel of its own, ready and connected."""
     pages = []
 
     def open_it(name, width=1280, height=900):
-        copy = f"{len(pages)}-{name}"
+        copy = f"{len(pages)}-{Path(name).name}"
         shutil.copy(root / "notebooks" / name, server.folder / copy)
         page = browser.new_page(viewport={"width": width, "height": height})
         page.set_default_timeout(60_000)
