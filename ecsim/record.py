@@ -173,7 +173,7 @@ class Recording:
     def edge(self, time_us: int, forward: bool = True, names: Iterable[str] | None = None) -> int | None:
         """The next moment, or the last one before, in which one of some signals changed (any without `names`); None if there is none."""
         places = [self._place(name) for name in (self.names if names is None else names)]
-        at = bisect_right(self.times, time_us) if forward else bisect_left(self.times, time_us) - 1
+        at = max(1, bisect_right(self.times, time_us)) if forward else bisect_left(self.times, time_us) - 1
         while 0 < at < len(self.times):
             if any(self.rows[at][place] != self.rows[at - 1][place] for place in places):
                 return self.times[at]

@@ -19,10 +19,11 @@ from .machine import Machine
 from .panel import Panel, Part
 from .rig import Rig, Terminals
 from .timers import Timers
+from .trace import Trace
 from .transport import Transport
 from .unit import Unit
 
-PARTS = {part.key: part for part in (Transport, Unit, Machine, Chart, Ladder, Timers, Devices)}
+PARTS = {part.key: part for part in (Transport, Unit, Machine, Chart, Ladder, Trace, Timers, Devices)}
 
 
 def parts_of(rig: Rig) -> list[str]:
@@ -37,6 +38,7 @@ class Lab(Panel):
     `model` is a model's name or a Plc, `program` what `Plc.load` takes, `plant` a machine with `wiring` and `step`,
     `picture` its drawing. `controls` says what drives an input: "switch" (the default), "push", "latch" or "stop".
     `devices` are watched in the device table, ["D0", "D100-D120:REAL"]; without it those that the program names.
+    `trace` names the lanes of the logic analyser, "S" the steps; without it the terminals of the machine and the steps.
     A lab of the same `name` is stopped and closed first, so running a cell again leaves one simulation.
     `speed` is times real time, None as fast as it goes; `autostart=False` leaves it paused. Raises ProgramError.
     """
@@ -56,6 +58,7 @@ class Lab(Panel):
         controls: Mapping[str, str] | None = None,
         title: str = "",
         devices: Iterable[str] = (),
+        trace: Iterable[str] = (),
     ):
         plc = model if isinstance(model, Plc) else Plc(model)
         if program is not None:
@@ -66,7 +69,7 @@ class Lab(Panel):
             self._labs[name].close()
         self.name = name
         title = title or re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(plant).__name__) if plant is not None else ""
-        rig = Rig(plc, session, terminals=terminals, picture=picture, controls=controls, title=title, devices=devices)
+        rig = Rig(plc, session, terminals=terminals, picture=picture, controls=controls, title=title, devices=devices, traced=trace)
         super().__init__(rig)
         self._labs[name] = self
         session.trace_frames = True
@@ -92,7 +95,7 @@ class Lab(Panel):
         return self.rig.session
 
     def panel(self, key: str) -> Panel:
-        """One panel of this lab alone: "transport", "unit", "machine", "chart", "ladder", "timers" or "devices"."""
+        """One panel of this lab alone: "transport", "unit", "machine", "chart", "ladder", "trace", "timers" or "devices"."""
         there = parts_of(self.rig)
         if key not in there:
             raise ValueError(f"there is no panel {key!r} here; there are {', '.join(there)}")

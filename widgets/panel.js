@@ -79,6 +79,7 @@ class Drawing {
       if (!node) continue;
       const attribute = entry.slice(cut + 1);
       if (attribute === "text") write(node, value ?? "");
+      else if (attribute === "markup") node.innerHTML = value ?? ""; // escaped by Python
       else set(node, attribute, value);
     }
   }
@@ -146,6 +147,7 @@ class Page {
     this.views = new Set();
     this.waiting = null;
     this.pulses = {};
+    this.requests = new Map(); // what the page has asked for and awaits, by number
     this.dead = false;
     this.heard = performance.now();
     model.on("msg:custom", (message) => this.receive(message));
@@ -167,6 +169,11 @@ class Page {
   say(part, verb, values = {}) {
     if (!this.dead) this.send({ part, do: verb, ...values });
   }
+  request(part, verb, values, heard) {
+    const asked = Math.random(); // other pages of this model hear the answer too, and do not know the question
+    this.requests.set(asked, heard);
+    this.say(part, verb, { ...values, asked });
+  }
   ask(question = { ping: true }) {
     this.send(question);
     this.unanswered ??= setTimeout(() => this.mourn(true), SILENCE_MS);
@@ -184,6 +191,10 @@ class Page {
       if (!message.full) this.ask({ hello: true });
     }
     if (message.ack) this.send({ ack: message.n });
+    if (this.requests.has(message.asked)) {
+      this.requests.get(message.asked)(message.answer);
+      this.requests.delete(message.asked);
+    }
     if (message.layout) {
       this.layout = message.layout;
       this.model.set("face", message.layout);

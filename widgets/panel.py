@@ -17,8 +17,8 @@ from .history import changes
 from .rig import Rig
 from .stream import Stream
 
-SCRIPTS = ("panel", "il", "plate", "transport", "unit", "machine", "chart", "ladder", "timers", "devices")
-STYLES = ("panel", "plate", "transport", "unit", "chart", "timers", "devices", "lab")
+SCRIPTS = ("panel", "il", "plate", "transport", "unit", "machine", "chart", "ladder", "trace", "timers", "devices")
+STYLES = ("panel", "plate", "transport", "unit", "chart", "trace", "timers", "devices", "lab")
 
 
 def _together(folder: resources.abc.Traversable, names: Iterable[str], ending: str) -> str:
@@ -45,12 +45,12 @@ class Part:
         """Bits that were on between this frame and the last one, and are off in both."""
         return []
 
-    def receive(self, verb: str, values: dict[str, Any]) -> None:
-        """A message from the page is one call: the method `on_<verb>`."""
+    def receive(self, verb: str, values: dict[str, Any]) -> Any:
+        """A message from the page is one call: the method `on_<verb>`; what it gives goes to a page that asked for it."""
         method = getattr(self, f"on_{verb}", None)
         if method is None:
             raise ValueError(f"the {self.key} panel knows no {verb!r}")
-        method(**values)
+        return method(**values)
 
     def close(self) -> None:
         """Nobody looks at this part any more."""
@@ -157,8 +157,10 @@ class Panel(anywidget.AnyWidget):
     def _receive(self, widget: object, message: dict[str, Any], buffers: object) -> None:
         self._asked_in = copy_context()
         if "part" in message:
-            values = {key: value for key, value in message.items() if key not in ("part", "do")}
-            self.parts[message["part"]].receive(message["do"], values)
+            values = {key: value for key, value in message.items() if key not in ("part", "do", "asked")}
+            answer = self.parts[message["part"]].receive(message["do"], values)
+            if "asked" in message:
+                self._answer({"n": self.stream.number, "asked": message["asked"], "answer": answer})
             self.show()
         elif "ack" in message:
             self.stream.heard(message["ack"])

@@ -83,12 +83,15 @@ class Rig:
         controls: Mapping[str, str] | None = None,
         title: str = "Machine",
         devices: Iterable[str] = (),
+        traced: Iterable[str] = (),
     ):
         self.plc, self.session, self.terminals = plc, session, terminals
         self.wiring = terminals.wiring if terminals else {}
         self.picture, self.title = picture, title
         self.controls = dict(controls or {})
         self.refused = ""  # why the last thing asked for was not done
+        self.traced = tuple(traced)
+        self.scope: Any = None  # of the trace, made by the first panel that shows it
         self.recent: deque[int] = deque(maxlen=RECENT)
         session.each_scan(self._note_scan)
         self.table = Table(plc, self.point)

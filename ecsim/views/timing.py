@@ -23,11 +23,12 @@ Changes = Sequence[tuple[int, int | None]]
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """A stretch of time, `begin` to `end` in us, and how many us a pixel holds."""
+    """A stretch of time, `begin` to `end` in us, and how many us a pixel holds; the last value holds until `known`, which may lie behind."""
 
     begin: int
     end: int
     us_per_px: float
+    known: int = 0
 
     def x(self, time: float) -> float:
         """Where a moment stands in the piece."""
@@ -39,7 +40,7 @@ class Stretch:
 
     def segments(self, changes: Changes) -> list[tuple[float, float, int]]:
         """The values that hold in it, from x to x; the ends may lie outside."""
-        after = [*changes[1:], (self.end, None)] if changes else []
+        after = [*changes[1:], (max(self.end, self.known), None)] if changes else []
         return [(self.x(time), self.x(later), value) for (time, value), (later, _) in zip(changes, after, strict=True) if value is not None]
 
 
@@ -110,8 +111,11 @@ def curve(changes: Changes, stretch: Stretch, low: float, high: float) -> str:
     return _path("word-line", f"{path}H{number(min(stretch.width, segments[-1][1]))}")
 
 
-def bus(changes: Changes, stretch: Stretch, words: Callable[[int], str], kind: str = "") -> str:
-    """Values that hold as segments with their words, crossing where they change; segments too narrow for that are a solid bar."""
+def bus(changes: Changes, stretch: Stretch, words: Callable[[int], str], kind: str = "") -> tuple[str, str]:
+    """Values that hold as segments, crossing where they change, and their words, to be laid over all pieces.
+
+    Segments too narrow for that are a solid bar; words stand where there is room for them, at the beginning of a segment.
+    """
     fills, lines, bars, letters = "", "", "", ""
     middle = (TOP + BOTTOM) // 2
     for left, right, value in stretch.segments(changes):
@@ -132,7 +136,7 @@ def bus(changes: Changes, stretch: Stretch, words: Callable[[int], str], kind: s
         if begins and said and width(said, LETTERS, True) + 2 * PIN <= right - left:
             letters += element("text", escape(said), class_=f"bus-text {kind}".rstrip(), x=left + PIN, y=middle + 4)
     extra = f" {kind}" if kind else ""
-    return _path(f"bus-fill{extra}", fills) + _path(f"bus{extra}", lines) + _path(f"dense{extra}", bars) + letters
+    return _path(f"bus-fill{extra}", fills) + _path(f"bus{extra}", lines) + _path(f"dense{extra}", bars), letters
 
 
 def ticks(begin: int, least: int) -> tuple[int, int, int]:
