@@ -5,8 +5,8 @@ from pathlib import Path
 from .assembler import Program
 from .errors import EcsimError, ProgramError
 from .help import help  # noqa: A004 - the public name of the act
-from .monitor import Monitor
 from .modbus import serve
+from .monitor import Monitor
 from .plc import Plc
 from .project import Project
 from .record import Recording
