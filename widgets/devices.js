@@ -223,7 +223,7 @@ panels.devices = (place, layout, page, view) => {
   function removeHere() {
     const slot = slotHere();
     if (!slot) return;
-    if (state[`row.${slot.number}`][2]) say("unforce", { number: slot.number });
+    if (state[`row.${slot.number}`][2]) say("release_row", { number: slot.number });
     else say("drop", { number: slot.number });
   }
   grid.addEventListener("keydown", (event) => {

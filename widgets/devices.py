@@ -120,7 +120,7 @@ class Devices(Plated):
         """Take a row out."""
         self.table.remove([number])
 
-    def on_unforce(self, number):
+    def on_release_row(self, number):
         """End forcing the device of a row."""
         row = self.table.rows.get(number)
         if row is not None:

@@ -4,7 +4,7 @@
 //   plate.open(anchor, { device: "X6", name: "EStop", what: "emergency stop" });   `anchor` is the element that it stands below
 //   plate.show(state);                                                             with every frame of the panel's state
 //
-// Python's side is a part of class Plated: the verbs look, leave, typed, write, force and release, the entry "plate.<id>".
+// Python's side is a part of class Plated: the verbs look, leave, typed, write, force and unforce, the entry "plate.<id>".
 
 let plateCount = 0;
 
@@ -74,7 +74,7 @@ function platesOf(part, page, view, { closed = () => {} } = {}) {
   function act(name) {
     const bits = { off: ["write", "0"], on: ["write", "1"], "force-off": ["force", "0"], "force-on": ["force", "1"] };
     if (name === "leave") close(true);
-    else if (name === "release") ask("release");
+    else if (name === "release") ask("unforce");
     else if (bits[name]) ask(...bits[name]);
     else ask(name, field().value, true);
   }
@@ -111,7 +111,9 @@ function platesOf(part, page, view, { closed = () => {} } = {}) {
       set(field(), "aria-invalid", entry.refused ? "true" : null);
     }
     const forced = entry.forced !== null;
-    node.querySelector('[data-act="release"]').disabled = !forced;
+    const release = node.querySelector('[data-act="release"]');
+    if (!forced && document.activeElement === release) (field() ?? node.querySelector("button")).focus({ preventScroll: true });
+    release.disabled = !forced;
     for (const button of node.querySelectorAll('[data-act^="force-"]')) {
       const here = forced && (button.dataset.act === "force-on") === (entry.forced === "1");
       button.classList.toggle("force", here);

@@ -88,7 +88,7 @@ class Plated(Part):
         if shown := self._plates.get(plate):
             self._change(shown, n, lambda plc: plc.force(shown.row.name, shown.row.read(text)))
 
-    def on_release(self, plate, n):
+    def on_unforce(self, plate, n):
         """End forcing the device."""
         if shown := self._plates.get(plate):
             self._change(shown, n, lambda plc: plc.unforce(shown.row.name))

@@ -187,10 +187,6 @@ class Rig:
         """The longest time the program may take."""
         return self.plc.system.watchdog_ms
 
-    def status(self) -> dict[str, int]:
-        """The three lamps of the unit: 0 is off, 1 on, 2 flashing."""
-        return {lamp: ("off", "on", "flashing").index(state) for lamp, state in self.plc.lamps.items()}
-
     def run(self) -> dict[str, Any]:
         """The state of the run, which every panel is stamped with."""
         plc, session = self.plc, self.session

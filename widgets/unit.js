@@ -1,4 +1,4 @@
-// The unit's face: a switch or button for each input, the window with its lamps, the mode switch, the force plate.
+// The unit's face: a switch or button for each input, the window with its lamps, the mode switch, the potentiometers.
 
 const CAP = {
   switch: `<svg class="sw slide" width="26" height="46" viewBox="0 0 26 46" aria-hidden="true"><rect class="slot" x="1.5" y="1.5" width="23" height="43" rx="4"/><rect class="lit" x="3" y="22" width="20" height="21" rx="3"/><path class="mark i" d="M13 29v8"/><circle class="mark o" cx="13" cy="13" r="4"/><g class="move"><rect class="cap" x="3.5" y="3.5" width="19" height="20" rx="3"/><path class="grip" d="M8 10.5h10M8 13.5h10M8 16.5h10"/></g></svg>`,
@@ -19,14 +19,20 @@ const LAMP = `<svg class="lamp" width="26" height="11" viewBox="0 0 26 11" aria-
 const SCREW = (at) =>
   `<svg class="screw" width="14" height="14" viewBox="0 0 14 14" aria-hidden="true"><circle cx="7" cy="7" r="5.5"/><line x1="3" y1="7" x2="11" y2="7" transform="rotate(${((at * 37) % 97) - 45} 7 7)"/></svg>`;
 
-const KNOB = `<svg class="knob" width="124" height="84" viewBox="0 0 124 84" aria-hidden="true"><circle class="skirt" cx="62" cy="50" r="29"/><circle class="body" cx="62" cy="50" r="23"/><line class="tick" x1="36.8" y1="30.3" x2="33.6" y2="27.8"/><text class="t-on" x="32" y="24.6" text-anchor="end">ON</text><line class="tick" x1="87.2" y1="30.3" x2="90.4" y2="27.8"/><text class="t-off" x="92" y="24.6" text-anchor="start">OFF</text><line class="hand" x1="55.7" y1="45.1" x2="47" y2="38.3"/></svg>`;
+const KNOB = `<svg class="knob" width="104" height="84" viewBox="10 0 104 84" aria-hidden="true"><circle class="skirt" cx="62" cy="50" r="29"/><circle class="body" cx="62" cy="50" r="23"/><line class="tick" x1="36.8" y1="30.3" x2="33.6" y2="27.8"/><text class="t-on" x="32" y="24.6" text-anchor="end">ON</text><line class="tick" x1="62" y1="18" x2="62" y2="14.5"/><text class="t-tm" x="62" y="10.5" text-anchor="middle">TM</text><line class="tick" x1="87.2" y1="30.3" x2="90.4" y2="27.8"/><text class="t-off" x="92" y="24.6" text-anchor="start">OFF</text><line class="hand" x1="55.7" y1="45.1" x2="47" y2="38.3"/></svg>`;
+const POSITIONS = ["ON", "TM", "OFF"];
+const [POT_MAX, POT_TURN] = [255, 270]; // a potentiometer's greatest value, and the degrees from 0 to it
+const POT = (at) => {
+  const ticks = Array.from({ length: 11 }, (_, tick) => `<line class="tick" x1="38" y1="${tick === 5 ? 4 : 6}" x2="38" y2="9" transform="rotate(${tick * 27 - 135} 38 32)"/>`).join("");
+  return `<svg class="knob pot" width="56" height="84" viewBox="10 0 56 92" aria-hidden="true">${ticks}<circle class="body" cx="38" cy="32" r="18"/><line class="hand" x1="38" y1="27" x2="38" y2="19"/><text class="value" x="38" y="73" text-anchor="middle">0</text><text x="38" y="87" text-anchor="middle">POT ${at}</text></svg>`;
+};
 
 panels.unit = (place, layout, page, view) => {
-  const { inputs = [], outputs = [], model = "" } = layout;
+  const { inputs = [], outputs = [], model = "", pots = 0 } = layout;
   const points = new Map([...inputs, ...outputs].map((point) => [point.device, point]));
   let state = {};
   let wide = null;
-  let plate = null;
+  const plate = platesOf("unit", page, view, { closed: () => select(null) });
 
   const title = (point) => `${point.device} ${point.name}`.trim();
   const rows = (list, count) => Array.from({ length: Math.ceil(list.length / count) }, (_, at) => list.slice(at * count, at * count + count));
@@ -65,18 +71,20 @@ panels.unit = (place, layout, page, view) => {
       })
       .join("");
     const outRows = rows(outputs, count);
-    if (outRows.at(-1).length > count - 3) outRows.push([]);
+    if (outRows.at(-1).length > count - 2 - pots) outRows.push([]);
     const outs = outRows
       .map((list, at) => {
         const last = at === outRows.length - 1;
-        const knob = last
-          ? `<div class="knobcell" style="grid-column:${count - 2}/${count + 1}" role="radiogroup" aria-label="Mode switch" data-testid="mode">${KNOB}
-              <button class="knobkey on" role="radio" data-mode="RUN" data-row="${row}" data-col="${count - 2}" tabindex="-1">ON</button><button class="knobkey off" role="radio" data-mode="STOP" data-row="${row}" data-col="${count - 1}" tabindex="-1">OFF</button></div>`
-          : "";
+        const from = count - 1 - pots;
+        const keys = POSITIONS.map((position, key) => `<button class="knobkey" role="radio" data-mode="${position}" data-testid="mode-${position}" data-row="${row}" data-col="${from - 1 + key}" tabindex="-1" style="left:${(key * 100) / 3}%">${position}</button>`);
+        const knob = last ? `<div class="knobcell" style="grid-column:${from}/span 2" role="radiogroup" aria-label="Mode switch" data-testid="mode">${KNOB}${keys.join("")}</div>${potentiometers(from + 2)}` : "";
         const brand = last ? `<div class="brand plate"><b>${escaped(model)}</b>${inputs.length} in · ${outputs.length} out</div>` : "";
         return `<div class="cols outs${last ? " last" : ""}">${list.map((point, col) => `${head(point, col)}</div>`).join("")}${knob}${brand}</div>`;
       })
       .join("");
+    function potentiometers(column) {
+      return Array.from({ length: pots }, (_, at) => `<div class="knobcell potcell" style="grid-column:${column + at}" role="slider" tabindex="0" aria-label="Potentiometer ${at}" aria-valuemin="0" aria-valuemax="${POT_MAX}" data-pot="${at}" data-testid="pot-${at}">${POT(at)}</div>`).join("");
+    }
     place.innerHTML = `
       <section class="unit" aria-label="${escaped(model)}, inputs and outputs" data-testid="unit" style="--ec-columns:${count}">
         <div class="cols strip top">${screws(0)}</div>${ins}<div class="glass">${glass}</div>${outs}<div class="cols strip bottom">${screws(5)}</div>
@@ -85,6 +93,7 @@ panels.unit = (place, layout, page, view) => {
     for (const button of place.querySelectorAll(".control")) operate(button);
     for (const cell of place.querySelectorAll(".lampcell[data-lamp]")) cell.addEventListener("click", () => open(cell.dataset.lamp));
     for (const name of place.querySelectorAll(".point .name, .point .addr")) name.addEventListener("click", () => open(name.parentElement.dataset.point));
+    for (const pot of place.querySelectorAll(".potcell")) turn(pot);
     for (const radio of place.querySelectorAll(".knobkey")) radio.addEventListener("click", () => page.say("unit", "mode", { mode: radio.dataset.mode }));
     place.firstElementChild.addEventListener("keydown", (event) => {
       if (event.key === "Enter" && event.target.dataset.lamp) {
@@ -164,88 +173,73 @@ panels.unit = (place, layout, page, view) => {
       if (!point) continue;
       if (device[0] === "X") control(device);
       lampOf(device);
-      if (plate?.device === device) fill();
     }
     for (const cell of place.querySelectorAll(".lampcell.status")) {
       const word = cell.dataset.status;
-      const on = state[word];
-      set(cell, "data-on", on ? (word === "RUN" ? "" : "fault") : null);
-      set(cell, "aria-label", `${word} lamp ${["off", "on", "flashing"][on ?? 0]}`);
+      const lamp = state[word] ?? "off";
+      set(cell, "data-on", lamp === "off" ? null : word === "RUN" ? "" : "fault");
+      set(cell, "data-flashing", lamp === "flashing" ? "" : null);
+      set(cell, "aria-label", `${word} lamp ${lamp}`);
     }
-    for (const radio of place.querySelectorAll(".knobkey")) {
-      const here = (radio.dataset.mode === "RUN") === Boolean(state.RUN);
-      set(radio, "aria-checked", String(here));
+    for (const radio of place.querySelectorAll(".knobkey")) set(radio, "aria-checked", String(radio.dataset.mode === state.switch));
+    set(place.querySelector("[data-testid=mode]"), "data-mode", state.switch);
+    for (const pot of place.querySelectorAll(".potcell")) {
+      const value = state[`pot${pot.dataset.pot}`] ?? 0;
+      set(pot, "aria-valuenow", value);
+      pot.querySelector(".hand").style.transform = `rotate(${(value / POT_MAX) * POT_TURN - POT_TURN / 2}deg)`;
+      write(pot.querySelector(".value"), String(value));
     }
-    set(place.querySelector(".knobcell"), "data-mode", state.RUN ? "RUN" : "STOP");
   }
 
-  // The plate of a point: what stands at the terminal, what the program sees, and the force that differs from both.
-  function open(device) {
-    const again = plate?.device === device;
-    close();
-    if (again || page.dead) return;
-    const point = points.get(device);
-    const node = document.createElement("div");
-    node.className = "plate-pop";
-    node.dataset.testid = "plate";
-    node.setAttribute("role", "dialog");
-    node.setAttribute("aria-label", title(point));
-    node.innerHTML = `
-      <p><b class="mono">${point.device}</b> ${escaped(point.name)} <span class="dim">${escaped(point.what)}</span></p>
-      <p class="rowline">${device[0] === "X" ? "<span>at the terminal</span><b data-is=terminal></b><span>seen by the program</span><b data-is=seen></b>" : "<span>at the output</span><b data-is=seen></b>"}</p>
-      <p class="acts2"><button class="btn" data-force="0" data-testid="force-off">Force off</button><button class="btn" data-force="1" data-testid="force-on">Force on</button><button class="btn" data-force="" data-testid="release">Release</button></p>`;
-    view.root.append(node);
-    plate = { device, node, back: document.activeElement };
-    const [cell, root] = [place.querySelector(`.lampcell[data-lamp="${device}"]`).getBoundingClientRect(), view.root.getBoundingClientRect()];
-    const zoom = root.width / view.root.offsetWidth || 1;
-    const left = (cell.left + cell.width / 2 - root.left) / zoom - node.offsetWidth / 2;
-    node.style.left = `${Math.max(4, Math.min(left, view.root.offsetWidth - node.offsetWidth - 4))}px`;
-    node.style.top = `${(cell.bottom - root.top) / zoom + 6}px`;
-    for (const button of node.querySelectorAll("[data-force]"))
-      button.addEventListener("click", () => {
-        const force = button.dataset.force;
-        page.say("unit", force === "" ? "release_force" : "force", { device, ...(force === "" ? {} : { on: Number(force) }) });
+  // A potentiometer follows the pointer around it, or the keys; many moves in one frame are one message.
+  function turn(pot) {
+    const number_ = Number(pot.dataset.pot);
+    let wanted = null;
+    let sending;
+    const put = (value) => {
+      wanted = Math.max(0, Math.min(POT_MAX, Math.round(value)));
+      sending ??= requestAnimationFrame(() => {
+        sending = undefined;
+        page.say("unit", "pot", { number: number_, value: wanted });
       });
-    node.addEventListener("keydown", (event) => {
-      if (event.key === "Escape") close(true);
-      event.stopPropagation();
+    };
+    const toward = (event) => {
+      const box = pot.querySelector(".body").getBoundingClientRect();
+      const degrees = (Math.atan2(event.clientX - box.left - box.width / 2, box.top + box.height / 2 - event.clientY) * 180) / Math.PI;
+      put(((Math.max(-POT_TURN / 2, Math.min(POT_TURN / 2, degrees)) + POT_TURN / 2) / POT_TURN) * POT_MAX);
+    };
+    pot.addEventListener("pointerdown", (event) => {
+      if (event.button || page.dead) return;
+      pot.setPointerCapture(event.pointerId);
+      toward(event);
     });
-    set(place.querySelector(`.point[data-point="${device}"]`), "data-selected", "");
-    fill();
-    node.querySelector("button").focus({ preventScroll: true });
+    pot.addEventListener("pointermove", (event) => pot.hasPointerCapture(event.pointerId) && toward(event));
+    pot.addEventListener("keydown", (event) => {
+      const now = wanted !== null && sending ? wanted : (state[`pot${number_}`] ?? 0);
+      const steps = { ArrowUp: 1, ArrowRight: 1, ArrowDown: -1, ArrowLeft: -1, PageUp: 16, PageDown: -16, Home: -POT_MAX, End: POT_MAX };
+      if (!(event.key in steps) || event.ctrlKey || event.metaKey || event.altKey) return;
+      event.preventDefault();
+      event.stopPropagation();
+      put(now + steps[event.key]);
+    });
   }
-  function fill() {
-    const { device, node } = plate;
-    const forced = state[`${device}.forced`];
-    const isForced = forced === 0 || forced === 1;
-    const seen = node.querySelector("[data-is=seen]");
-    write(seen, isForced ? `F ${forced}` : String(Number(Boolean(state[device[0] === "X" ? `${device}.seen` : device]))));
-    seen.className = isForced ? "fv" : "";
-    const terminal = node.querySelector("[data-is=terminal]");
-    if (terminal) write(terminal, String(Number(Boolean(state[device]))));
-    for (const button of node.querySelectorAll("[data-force]")) {
-      const here = isForced && button.dataset.force === String(forced);
-      button.classList.toggle("force", here);
-      set(button, "aria-pressed", String(here));
-    }
-    node.querySelector('[data-force=""]').disabled = !isForced;
+
+  function select(device) {
+    for (const point of place.querySelectorAll(".point[data-selected]")) set(point, "data-selected", null);
+    if (device) set(place.querySelector(`.point[data-point="${device}"]`), "data-selected", "");
   }
-  function close(focus) {
-    if (!plate) return;
-    plate.node.remove();
-    set(place.querySelector(`.point[data-point="${plate.device}"]`), "data-selected", null);
-    if (focus) plate.back?.focus({ preventScroll: true });
-    plate = null;
+  function open(device) {
+    const { name, what } = points.get(device);
+    plate.open(place.querySelector(`.lampcell[data-lamp="${device}"]`), { device, name, what });
+    if (plate.label === device) select(device);
   }
-  const outside = (event) => plate && !plate.node.contains(event.target) && !event.target.closest("[data-lamp], .name, .addr") && close();
-  document.addEventListener("pointerdown", outside);
 
   // 16 columns need 816 px; below that the unit takes rows of eight.
   const fit = () => {
     const now = place.clientWidth >= 760;
     if (!place.clientWidth || now === wide) return;
     wide = now;
-    close();
+    plate.close();
     build(wide ? 16 : 8);
   };
   const sizes = new ResizeObserver(fit);
@@ -256,6 +250,7 @@ panels.unit = (place, layout, page, view) => {
     apply(changes, now) {
       state = now;
       show(changes);
+      plate.show(now);
     },
     pulsed(devices) {
       for (const device of devices) {
@@ -267,13 +262,12 @@ panels.unit = (place, layout, page, view) => {
       }
     },
     rest(dead) {
-      if (dead) close();
-      for (const button of place.querySelectorAll(".control, .knobkey")) set(button, "aria-disabled", dead ? "true" : null);
+      if (dead) plate.close();
+      for (const button of place.querySelectorAll(".control, .knobkey, .potcell")) set(button, "aria-disabled", dead ? "true" : null);
     },
     close() {
-      document.removeEventListener("pointerdown", outside);
       sizes.disconnect();
-      close();
+      plate.end();
     },
   };
 };

@@ -1,12 +1,12 @@
-"""The unit's face: inputs as switches and buttons, the window with its lamps, the mode switch, forcing."""
+"""The unit's face: inputs as switches and buttons, the window with its lamps, the mode switch, the potentiometers; a plate for each point."""
 
 from .history import Pulses
-from .panel import Part
+from .plate import Plated
 
 PATIENCE_US = 100_000  # a press that no scan sees for so long (a filter, a force) is let go all the same
 
 
-class Unit(Part):
+class Unit(Plated):
     """Inputs and outputs of the unit; a control shows the terminal, a lamp what the program sees."""
 
     key = "unit"
@@ -26,11 +26,13 @@ class Unit(Part):
             "model": self.rig.plc.model.name,
             "inputs": [rows[device] | {"control": self.rig.controls.get(device, "switch")} for device in self.rig.inputs],
             "outputs": [rows[device] for device in self.rig.outputs],
+            "pots": len(self.rig.plc.pots),
         }
 
     def frame(self):
         rig = self.rig
-        entries = dict(rig.status())
+        entries = {**rig.plc.lamps, "switch": rig.plc.switch, **self.plates()}
+        entries.update((f"pot{number}", value) for number, value in enumerate(rig.plc.pots))
         forced = rig.plc.forced
         for device in rig.inputs:
             entries[device] = rig.terminal(device)
@@ -59,11 +61,6 @@ class Unit(Part):
 
     def close(self):
         self._leave()
-
-    def _device(self, device):
-        if device not in self.points:
-            raise ValueError(f"the unit has no {device!r}")
-        return device
 
     def _input(self, device):
         if device not in self.rig.inputs:
@@ -101,16 +98,10 @@ class Unit(Part):
         """Give an input back to the machine."""
         self.rig.free(self._input(device))
 
-    def on_force(self, device, on):
-        """Force a point, whatever terminal and program say."""
-        device = self._device(device)
-        self.rig.post(lambda plc: plc.force(device, int(bool(on))))
-
-    def on_release_force(self, device):
-        """End forcing a point."""
-        device = self._device(device)
-        self.rig.post(lambda plc: plc.unforce(device))
-
     def on_mode(self, mode):
-        """The mode switch: RUN or STOP."""
-        self.rig.post(lambda plc: plc.run() if mode == "RUN" else plc.stop())
+        """Turn the mode switch to "ON", "TM" or "OFF"."""
+        self.rig.post(lambda plc: setattr(plc, "switch", mode))
+
+    def on_pot(self, number, value):
+        """Turn a potentiometer to a value of 0 to 255."""
+        self.rig.post(lambda plc: plc.pots.__setitem__(int(number), int(value)))

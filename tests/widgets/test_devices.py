@@ -74,7 +74,7 @@ def test_forced_rows_alone_come_and_go_with_the_force(part):
     part.frame()
     first, numbers, total = part.frame()["shown.v"]
     assert (first, total) == (0, 1)
-    part.receive("unforce", {"number": numbers[0]})
+    part.receive("release_row", {"number": numbers[0]})
     assert part.rig.plc.forced == {}
 
 

@@ -29,7 +29,7 @@ def test_an_input_shows_its_way_from_the_terminal_to_the_program(part):
     part.receive("force", {"plate": "p", "n": 2, "text": "0"})
     part.rig.session.scan()
     assert lines(part) == {"at the terminal": "1", "after the filter": "1", "seen by the program": "F 0"}
-    part.receive("release", {"plate": "p", "n": 3})
+    part.receive("unforce", {"plate": "p", "n": 3})
     part.rig.session.scan()
     assert lines(part)["seen by the program"] == "1"
     assert plate(part)["done"] == 3
@@ -104,7 +104,7 @@ def test_a_step_back_repeats_the_force_and_answers_nobody(part):
     part.receive("look", {"plate": "p", "device": "Y3"})
     part.receive("force", {"plate": "p", "n": 1, "text": "1"})
     part.rig.session.scan(2)
-    part.receive("release", {"plate": "p", "n": 2})
+    part.receive("unforce", {"plate": "p", "n": 2})
     part.rig.session.scan(2)
     assert part.rig.session.back(2)
     assert plate(part)["done"] == 2

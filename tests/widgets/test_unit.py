@@ -80,26 +80,48 @@ def test_without_the_machine_all_inputs_are_the_hands(make_rig, shuttle):
 
 def test_forcing_a_point_and_releasing_it(rig):
     unit = Unit(rig)
-    unit.receive("force", {"device": "Y3", "on": 1})
+    unit.receive("look", {"plate": "p", "device": "Y3"})
+    unit.receive("force", {"plate": "p", "n": 1, "text": "1"})
     rig.session.scan()
-    assert (unit.frame()["Y3"], unit.frame()["Y3.forced"]) == (1, 1)
-    unit.receive("release_force", {"device": "Y3"})
+    assert (unit.frame()["Y3"], unit.frame()["Y3.forced"], unit.frame()["plate.p"]["forced"]) == (1, 1, "1")
+    unit.receive("unforce", {"plate": "p", "n": 2})
     rig.session.scan()
     assert "Y3.forced" not in unit.frame()
 
 
 def test_the_mode_switch_stops_and_runs_the_unit(rig):
     unit = Unit(rig)
-    assert unit.frame()["RUN"] == 1
-    unit.receive("mode", {"mode": "STOP"})
-    assert unit.frame()["RUN"] == 0
-    unit.receive("mode", {"mode": "RUN"})
-    assert unit.frame()["RUN"] == 1
+    assert (unit.frame()["RUN"], unit.frame()["switch"]) == ("on", "ON")
+    unit.receive("mode", {"mode": "TM"})
+    assert (unit.frame()["RUN"], unit.frame()["switch"]) == ("on", "TM")  # TM changes nothing by itself (2.3.2)
+    unit.receive("mode", {"mode": "OFF"})
+    assert (unit.frame()["RUN"], unit.frame()["switch"]) == ("off", "OFF")
+    unit.receive("mode", {"mode": "ON"})
+    assert unit.frame()["RUN"] == "on"
+
+
+def test_the_lamps_are_those_of_the_machine(rig):
+    unit = Unit(rig)
+    assert (unit.frame()["ERR"], unit.frame()["BAT"]) == ("off", "off")
+    rig.plc.battery = "failing"
+    assert unit.frame()["BAT"] == "on"
+    rig.plc.power_off()
+    assert {unit.frame()[lamp] for lamp in ("RUN", "ERR", "BAT")} == {"off"}
+
+
+def test_the_potentiometers_are_turned(rig):
+    unit = Unit(rig)
+    assert unit.layout()["pots"] == 2  # 2.1.1
+    unit.receive("pot", {"number": 1, "value": 40})
+    assert (rig.plc.pots[1], unit.frame()["pot0"], unit.frame()["pot1"]) == (40, 0, 40)
+    unit.receive("pot", {"number": 1, "value": 256})
+    assert "256" in rig.run()["refused"]
+    assert unit.frame()["pot1"] == 40
 
 
 @pytest.mark.parametrize(
     ("verb", "values"),
-    [("set", {"device": "Y0", "on": 1}), ("set", {"device": "X400", "on": 1}), ("force", {"device": "D0", "on": 1}), ("explode", {})],
+    [("set", {"device": "Y0", "on": 1}), ("set", {"device": "X400", "on": 1}), ("explode", {})],
 )
 def test_what_the_unit_has_not_is_refused(rig, verb, values):
     with pytest.raises(ValueError, match=r"no|knows"):

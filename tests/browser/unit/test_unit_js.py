@@ -1,0 +1,206 @@
+"""The unit's face in a bare page, on a real PLC that stands still."""
+
+import pytest
+
+pytestmark = pytest.mark.browser
+
+PROGRAM = """
+VAR_GLOBAL
+  Start AT X5 // start button
+END_VAR
+PROGRAM MAIN
+LD Start
+OUT Y0
+LD SM0
+VRRD 1 D5
+END_PROGRAM
+"""
+
+
+class Shuttle:
+    """A plant that drives X0."""
+
+    wiring = {"X0": type("Point", (), {"name": "There", "what": "the part is there"})}
+
+    def step(self, seconds, outputs):
+        return {"X0": 0}
+
+
+@pytest.fixture
+def unit(bench, make_lab):
+    """The unit of a lab with one control of each kind."""
+    bench.lab = make_lab(PROGRAM, plant=Shuttle(), controls={"X5": "push", "X6": "stop", "X7": "latch"})
+    bench.connect(bench.lab.panel("unit"))
+    return bench
+
+
+def scan(bench, count=1):
+    bench.lab.session.scan(count)
+    bench.settle()
+
+
+@pytest.mark.parametrize("device", ["X1", "X6", "X7"])
+def test_a_switch_a_stop_and_a_latching_button_stay(unit, device):
+    for level in (1, 0):
+        unit[device].click()
+        unit.settle()
+        assert unit[device].get_attribute("aria-checked") == ("true" if level else "false")
+        assert unit[f"lamp-{device}"].get_attribute("data-on") != ("" if level else None)  # the program has not looked
+        scan(unit)
+        assert unit[f"lamp-{device}"].get_attribute("data-on") == ("" if level else None)
+
+
+def test_a_push_button_is_on_while_it_is_held_by_mouse(unit):
+    unit["X5"].hover()
+    unit.page.mouse.down()
+    unit.settle()
+    scan(unit)
+    assert (unit["X5"].get_attribute("aria-pressed"), unit["lamp-Y0"].get_attribute("data-on")) == ("true", "")
+    unit.page.mouse.up()
+    unit.settle()
+    scan(unit)
+    assert (unit["X5"].get_attribute("aria-pressed"), unit["lamp-Y0"].get_attribute("data-on")) == ("false", None)
+
+
+@pytest.mark.parametrize("key", ["Space", "Enter"])
+def test_a_push_button_is_on_while_it_is_held_by_key(unit, key):
+    unit["X5"].focus()
+    unit.page.keyboard.down(key)
+    unit.settle()
+    scan(unit)
+    assert unit.lab.plc["Y0"] == 1
+    unit.page.keyboard.up(key)
+    unit.settle()
+    scan(unit)
+    assert unit.lab.plc["Y0"] == 0
+
+
+def test_a_push_button_is_on_while_it_is_held_by_touch(unit):
+    touch = "([type]) => { const button = document.querySelector('[data-testid=X5]'); button.setPointerCapture = () => {}; button.dispatchEvent(new PointerEvent(type, { pointerId: 7, pointerType: 'touch', bubbles: true })); }"
+    unit.js(touch, ["pointerdown"])
+    unit.settle()
+    scan(unit)
+    assert unit.lab.plc["Y0"] == 1
+    unit.js(touch, ["pointercancel"])
+    unit.settle()
+    scan(unit)
+    assert unit.lab.plc["Y0"] == 0
+
+
+def test_an_input_of_the_machine_is_taken_over_and_given_back(unit):
+    assert unit["X0"].get_attribute("data-kind") == "machine"
+    unit["X0"].click()
+    unit.settle()
+    scan(unit)
+    assert (unit["X0"].get_attribute("data-kind"), unit.lab.plc["X0"]) == ("stuck", 1)
+    unit["X0"].click()
+    unit.settle()
+    scan(unit)
+    assert (unit["X0"].get_attribute("data-kind"), unit.lab.plc["X0"]) == ("machine", 0)
+
+
+def test_arrows_go_from_control_to_control_and_down_to_the_lamp(unit):
+    unit["X1"].focus()
+    for key, name in (("ArrowRight", "X2"), ("ArrowLeft", "X1"), ("ArrowDown", "lamp-X1"), ("ArrowDown", "lamp-Y1"), ("Home", "lamp-Y0")):
+        unit.page.keyboard.press(key)
+        assert unit.js("() => document.activeElement.dataset.testid") == name
+
+
+def test_the_plate_of_a_point_shows_its_way_and_forces_it(unit):
+    unit["lamp-X5"].focus()
+    unit.page.keyboard.press("Enter")
+    unit.settle()
+    assert unit["plate"].inner_text().split("\n")[0].split() == ["X5", "Start", "start", "button"]
+    assert unit["release"].is_disabled()
+    unit["force-on"].click()
+    unit.settle()
+    scan(unit)
+    rows = unit["plate"].locator(".rowline").inner_text().split()
+    assert rows == "at the terminal 0 after the filter 0 seen by the program F 1".split()
+    assert unit["lamp-X5"].get_attribute("data-forced") == ""
+    assert unit["lamp-X5"].get_attribute("aria-label") == "X5 Start on, forced"
+    assert unit.lab.plc["Y0"] == 1
+    unit["release"].click()
+    unit.settle()
+    scan(unit)
+    assert unit.lab.plc.forced == {}
+    unit.page.keyboard.press("Escape")
+    unit.settle()
+    assert unit["plate"].count() == 0
+
+
+def test_another_point_takes_the_plate_over(unit):
+    for name, device in (("lamp-X5", "X5"), ("lamp-X12", "X12")):
+        unit[name].click()
+        unit.settle()
+        assert unit["plate"].get_attribute("aria-label").split()[0] == device
+        assert unit.page.locator(".point[data-selected]").get_attribute("data-point") == device
+    unit["lamp-X12"].click()
+    unit.settle()
+    assert unit["plate"].count() == 0
+    assert unit.page.locator(".point[data-selected]").count() == 0
+
+
+def test_the_mode_switch_has_three_positions(unit):
+    for position, run in (("OFF", None), ("ON", ""), ("TM", "")):
+        unit[f"mode-{position}"].click()
+        unit.settle()
+        assert unit[f"mode-{position}"].get_attribute("aria-checked") == "true"
+        assert unit.lab.plc.switch == position
+        assert unit["lamp-RUN"].get_attribute("data-on") == run
+
+
+def test_lamps_shine_flash_and_say_so(unit):
+    assert unit["lamp-ERR"].get_attribute("aria-label") == "ERR lamp off"
+    unit.lab.plc.battery = "failing"
+    scan(unit)
+    assert (unit["lamp-BAT"].get_attribute("data-on"), unit["lamp-BAT"].get_attribute("aria-label")) == ("fault", "BAT lamp on")
+    flashing = dict(unit.js("() => model.get('last').unit"), ERR="flashing")
+    unit.tell(n=999, state={"unit": {"ERR": flashing["ERR"]}})
+    assert (unit["lamp-ERR"].get_attribute("data-flashing"), unit["lamp-ERR"].get_attribute("aria-label")) == ("", "ERR lamp flashing")
+    assert unit.js("() => getComputedStyle(document.querySelector('[data-testid=lamp-ERR] circle')).animationDuration") == "1s"
+
+
+def test_a_potentiometer_is_turned_by_keys_and_the_program_reads_it(unit):
+    unit["pot-1"].focus()
+    for key, value in (("PageUp", 16), ("ArrowUp", 17), ("ArrowLeft", 16), ("End", 255), ("ArrowRight", 255), ("Home", 0), ("PageUp", 16)):
+        unit.page.keyboard.press(key)
+        unit.settle()
+        assert unit["pot-1"].get_attribute("aria-valuenow") == str(value)
+    scan(unit)
+    assert unit.lab.plc["D5"] == 16
+
+
+def test_a_potentiometer_follows_the_pointer(unit):
+    box = unit["pot-0"].locator(".body").bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    unit.page.mouse.move(x, y - 12)
+    unit.page.mouse.down()
+    unit.settle()
+    assert abs(unit.lab.plc.pots[0] - 128) <= 2  # straight up is the middle
+    unit.page.mouse.move(x + 40, y)
+    unit.page.mouse.up()
+    unit.settle()
+    assert abs(unit.lab.plc.pots[0] - 255 * (90 + 135) / 270) <= 2
+
+
+@pytest.mark.parametrize(("width", "columns"), [(1280, 16), (900, 16), (620, 8)])
+def test_nothing_of_the_unit_is_cut_off(unit, width, columns):
+    unit.page.set_viewport_size({"width": width, "height": 900})
+    unit.frame()
+    unit.frame()
+    assert unit.js("() => document.querySelector('.unit').style.getPropertyValue('--ec-columns')") == str(columns)
+    outside = """() => [...document.querySelectorAll('.unit :is(.control, .lampcell, .knobcell, .addr)')].filter((node) => {
+      const [box, unit] = [node.getBoundingClientRect(), document.querySelector('.unit').getBoundingClientRect()];
+      return box.left < unit.left || box.right > unit.right || box.bottom > unit.bottom;
+    }).length"""
+    assert unit.js(outside) == 0
+
+
+def test_without_a_kernel_nothing_can_be_switched(unit):
+    unit["lamp-X5"].click()
+    unit.settle()
+    unit.js("() => { model.gone = true; model.handlers['comm_live_update'](); }")
+    unit.frame()
+    assert unit["plate"].count() == 0
+    assert unit["X1"].get_attribute("aria-disabled") == "true"
