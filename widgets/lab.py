@@ -14,6 +14,7 @@ from ecsim.session import Session
 
 from .chart import Chart
 from .devices import Devices
+from .editor import Editor
 from .ladder import Ladder
 from .machine import Machine
 from .panel import Panel, Part
@@ -23,12 +24,12 @@ from .trace import Trace
 from .transport import Transport
 from .unit import Unit
 
-PARTS = {part.key: part for part in (Transport, Unit, Machine, Chart, Ladder, Trace, Timers, Devices)}
+PARTS = {part.key: part for part in (Transport, Unit, Machine, Chart, Ladder, Trace, Timers, Devices, Editor)}
 
 
 def parts_of(rig: Rig) -> list[str]:
-    """The panels that have something to show: no machine without a picture, no chart without steps."""
-    shown = {"machine": rig.picture is not None, "chart": bool(rig.charted)}
+    """The panels that have something to show: no machine without a picture, no chart without steps; the editor stands alone."""
+    shown = {"editor": False, "machine": rig.picture is not None, "chart": bool(rig.charted)}
     return [key for key in PARTS if shown.get(key, True)]
 
 
@@ -95,8 +96,8 @@ class Lab(Panel):
         return self.rig.session
 
     def panel(self, key: str) -> Panel:
-        """One panel of this lab alone: "transport", "unit", "machine", "chart", "ladder", "trace", "timers" or "devices"."""
-        there = parts_of(self.rig)
+        """One panel of this lab alone: "transport", "unit", "machine", "chart", "ladder", "trace", "timers", "devices" or "editor"."""
+        there = [*parts_of(self.rig), Editor.key]
         if key not in there:
             raise ValueError(f"there is no panel {key!r} here; there are {', '.join(there)}")
         return Panel(self.rig, [PARTS[key]])
