@@ -121,7 +121,11 @@ def test_a_wrong_value_is_told_with_step_device_value_and_expectation(tracing):
         ({"steps": [], "system_block": {"hold": 1}}, "the system block's key 'hold' is not known"),
         ({"steps": [], "system_block": {"port1": {"speed": 1}}}, "port1 has no setting 'speed'; it has baud"),
         (
-            {"il": "LD SM1\nXMT 1 D0 1", "steps": [{"scans": 1, "serial": [{"port": 1, "tx": "41"}]}], "system_block": {"port1": {"protocol": "freeport"}}},
+            {
+                "il": "LD SM1\nXMT 1 D0 1",
+                "steps": [{"scans": 1, "serial": [{"port": 1, "tx": "41"}]}],
+                "system_block": {"port1": {"protocol": "freeport"}},
+            },
             "step 1: port 1 is 00, expected 41",
         ),
     ],

@@ -97,7 +97,9 @@ class Motor(Faulty):
         elif self.heat <= 0:
             self.tripped = False
         driven = [self._outputs[0] or ("F welded" in self.faults and self.forward > 0), self._outputs[1]]
-        rates = [towards(place, int(bool(on)), CLOSE_S if on else OPEN_S) for place, on in zip((self.forward, self.reverse), driven, strict=True)]
+        rates = [
+            towards(place, int(bool(on)), CLOSE_S if on else OPEN_S) for place, on in zip((self.forward, self.reverse), driven, strict=True)
+        ]
         closed = self.forward > 0 and (self.forward == 1 or rates[0] < 0), self.reverse > 0 and (self.reverse == 1 or rates[1] < 0)
         if all(closed) and not self._amiss:
             self.incidents += (Incident(round(self.seconds, 3), "a short circuit between the phases"),)
