@@ -147,7 +147,7 @@ class Project:
         entries, problems = list(_entries(document)), []
         for table, key, value in entries:
             try:
-                Project({})._set(table, key, value, model)
+                Project({}, system=SystemBlock(watchdog_ms=0))._set(table, key, value, model)  # by itself: a watchdog of 0 limits nothing
                 self._set(table, key, value)
             except EcsimError as error:
                 problems.append(self._problem(table, key, str(error), toml))
@@ -232,9 +232,7 @@ class Project:
         texts = dict(self.files) | ({SETTINGS: toml} if toml or self.toml else {})
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            _replace_files(folder, texts)
-            for each in others:
-                each.unlink()
+            _replace_files(folder, texts, others)
         except OSError as error:
             raise EcsimError(f"{folder} cannot be written: {error.strerror or error}") from None
         self.toml, self.origin = toml, frozenset((folder / name).resolve() for name in self.files)
@@ -306,8 +304,9 @@ def _text(path: Path) -> str:
         raise EcsimError(f"{path} cannot be read: {getattr(error, 'strerror', None) or error}") from None
 
 
-def _replace_files(folder: Path, texts: dict[str, str]) -> None:
-    """Write all texts beside their places first, then put each into its place."""
+def _replace_files(folder: Path, texts: dict[str, str], gone: list[Path]) -> None:
+    """Write all texts beside their places first, then put each into its place and remove what is gone; when that fails, all is as it was."""
+    former: dict[Path, bytes | None] = {}  # of the files that have changed already
     waiting: list[tuple[str, Path]] = []
     try:
         for name, text in texts.items():
@@ -323,8 +322,18 @@ def _replace_files(folder: Path, texts: dict[str, str]) -> None:
             os.chmod(temporary, target.stat().st_mode if target.exists() else 0o644)
         while waiting:
             temporary, target = waiting[0]
+            content = target.read_bytes() if target.exists() else None
             os.replace(temporary, target)
+            former[target] = content
             waiting.pop(0)
+        for target in gone:
+            content = target.read_bytes()
+            target.unlink()
+            former[target] = content
+    except OSError:
+        for target, content in former.items():
+            target.unlink() if content is None else target.write_bytes(content)
+        raise
     finally:
         for temporary, _ in waiting:
             os.unlink(temporary)

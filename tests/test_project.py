@@ -185,6 +185,21 @@ def test_the_name_of_a_folder_alone_is_a_path(press, monkeypatch):
     assert Project.of("LD X0").files == {"": "LD X0"}
 
 
+@pytest.mark.parametrize("toml", ["constant_scan_ms = 600\nwatchdog_ms = 600", "watchdog_ms = 0\nconstant_scan_ms = 1000"])
+def test_a_long_constant_scan_goes_with_a_long_watchdog(folder, toml):
+    (folder / "plc.toml").write_text(f"[system]\n{toml}\n")
+    system = Project.read(folder).system
+    assert f"constant_scan_ms = {system.constant_scan_ms}" in toml
+    assert f"watchdog_ms = {system.watchdog_ms}" in toml
+
+
+@pytest.mark.parametrize("toml", ["constant_scan_ms = 600\nwatchdog_ms = 599", "constant_scan_ms = 201"])
+def test_a_constant_scan_above_the_watchdog_is_refused(folder, toml):
+    (folder / "plc.toml").write_text(f"[system]\n{toml}\n")
+    with pytest.raises(ProgramError, match=r"above the watchdog's (599|200); raise watchdog_ms"):
+        Project.read(folder)
+
+
 def test_variables_have_a_file_of_their_own(folder):
     (folder / "variables.il").write_text("VAR_GLOBAL\nStart AT X0 // button\nEND_VAR\n")
     (folder / "main.il").write_text("LD Start\nOUT Y0\n")
@@ -433,6 +448,34 @@ def test_a_failure_while_writing_leaves_every_file_whole(press, monkeypatch, fai
     with pytest.raises(EcsimError, match="cannot be written: No space left on device"):
         project.write(press)
     assert contents(press) == before
+
+
+@pytest.mark.parametrize("failing", ["replace", "unlink"])
+def test_a_failure_in_the_middle_of_writing_brings_the_former_files_back(press, monkeypatch, failing):
+    (press / "variables.il").write_text("VAR_GLOBAL\nStart AT X0\nEND_VAR\n")
+    project, before = Project.read(press), contents(press)
+    del project.files["variables.il"]
+    project.files |= {
+        "main.il": project.files["main.il"] + "// more\n",
+        "subs.il": project.files["subs.il"] + "\n// more\n",
+        "new.il": "// new\n",
+    }
+    if failing == "replace":
+        replace = os.replace
+
+        def once(source, target):
+            if Path(target).name == "new.il":
+                raise OSError(28, "No space left on device")
+            replace(source, target)
+
+        monkeypatch.setattr(module.os, "replace", once)
+    else:
+        unlink = Path.unlink
+        monkeypatch.setattr(Path, "unlink", lambda path: os.rmdir(path) if path.name == "variables.il" else unlink(path))
+    with pytest.raises(EcsimError, match=r"cannot be written: (No space left|Not a directory)"):
+        project.write(press)
+    assert contents(press) == before
+    assert Project.read(press).files.keys() == {"main.il", "subs.il", "variables.il"}
 
 
 def test_a_written_file_keeps_its_rights(press):
