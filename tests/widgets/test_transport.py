@@ -96,4 +96,51 @@ def test_a_fault_of_the_machine_is_told_with_its_code(make_rig):
     rig.session.scan()
     assert rig.run()["mode"] == "STOP"
     assert rig.run()["fault"].startswith("Error 61, ")
-    assert rig.status() == {"RUN": 0, "ERR": 1, "BAT": 0}
+    assert rig.plc.lamps == {"RUN": "off", "ERR": "on", "BAT": "off"}
+
+
+def test_the_bar_shows_step_changes_breakpoints_and_where_memory_begins(rig):
+    transport = Transport(rig)
+    transport.receive("break_add", {"text": "S20"})
+    rig.session.scan(5)
+    rig.put("X0", 1)
+    rig.session.scan(100)
+    frame = transport.frame()
+    assert frame["first"] == 0
+    assert frame["events"] == [[1, "step", "S0"], [6, "breakpoint", "S20"], [6, "step", "S20"]]
+    assert frame["breaks"] == [["S20", 1, 1, ""]]
+    assert rig.run()["hit"] == ""  # nothing runs, so nothing was stopped
+    rig.session.state = "paused"
+    assert rig.run()["hit"] == "S20"
+
+
+def test_the_past_is_shown_without_losing_what_came_later(rig):
+    transport = Transport(rig)
+    rig.session.scan(40)
+    transport.receive("seek", {"scan": 10})
+    assert (rig.run()["scan"], rig.run()["back"], rig.run()["back_us"]) == (10, 30, 300_000)
+    transport.receive("seek", {"scan": 35.0})
+    assert (rig.run()["scan"], rig.run()["back"]) == (35, 5)
+    transport.receive("seek", {"scan": 900})
+    assert (rig.run()["scan"], rig.run()["back"]) == (40, 0)
+    transport.receive("seek", {"scan": -5})
+    transport.receive("scan", {})
+    assert (rig.run()["scan"], rig.run()["back"]) == (1, 0)
+
+
+def test_a_breakpoint_that_cannot_be_read_is_refused_in_words(rig):
+    transport = Transport(rig)
+    transport.receive("break_add", {"text": "D0 >"})
+    assert "is no condition" in transport.frame()["problem"]
+    assert transport.frame()["breaks"] == []
+    transport.receive("break_add", {"text": "D0 > 5"})
+    transport.receive("break_enable", {"text": "D0 > 5", "on": False})
+    assert (transport.frame()["problem"], transport.frame()["breaks"]) == ("", [["D0 > 5", 0, 0, ""]])
+    transport.receive("break_remove", {"text": "D0 > 5"})
+    assert transport.frame()["breaks"] == []
+
+
+def test_a_step_back_is_named_as_the_past(rig):
+    rig.session.scan(9)
+    Transport(rig).receive("back", {})
+    assert rig.run()["back"] == 1
