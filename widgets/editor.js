@@ -211,8 +211,12 @@ panels.editor = (place, layout, page, view) => {
     const before = area.value.slice(0, help.from);
     offers.innerHTML = offered.map(([text, kind, about], at) => `<li role="option" id="${offersId}-${at}" data-at="${at}" aria-selected="false"><span class="${kind}">${escaped(text)}</span><span class="dim">${escaped(about)}</span></li>`).join("");
     offers.style.left = `${before.length - before.lastIndexOf("\n") - 1}ch`;
-    offers.style.top = `${before.split("\n").length * 1.5}em`;
     offers.hidden = false;
+    const below = over.children[before.split("\n").length - 1].offsetTop + over.offsetTop;
+    const line = over.firstChild.offsetHeight;
+    const room = sheet.scrollTop + sheet.clientHeight - offers.parentElement.offsetTop - below - line;
+    const above = offers.offsetHeight > room && below - offers.offsetHeight >= 0;
+    offers.style.top = `${above ? below - offers.offsetHeight : below + line}px`;
   }
   function close() {
     offers.hidden = true;
@@ -249,6 +253,8 @@ panels.editor = (place, layout, page, view) => {
 
   area.addEventListener("input", (event) => {
     remember(event.inputType);
+    write(verdict, "");
+    set(verdict, "data-refused", null);
     typed();
   });
   area.addEventListener("beforeinput", (event) => {
