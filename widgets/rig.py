@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 from ecsim.assembler.program import Instruction
 from ecsim.devices import Bits, Constant, number_text
 from ecsim.errors import EcsimError
+from ecsim.values import DINT
 
 from .history import StepTimes
 from .table import Table
@@ -170,12 +171,14 @@ class Rig:
             place = self._places[device] = parsed.area, parsed.number
         return place
 
-    def value(self, operand: Any) -> int:
-        """A constant, or the value of the register that stands in its place."""
+    def value(self, operand: Any, wide: bool = False) -> int:
+        """A constant, or the value of the register that stands in its place; `wide` of two registers, where the device can be had as that."""
         if isinstance(operand, Constant):
             return int(operand.value)
         index = 0 if operand.index is None else self.plc.memory.lists[operand.index_area][operand.index]
-        return int(self.plc[str(replace(operand, number=operand.number + index, index=None))])
+        device = replace(operand, number=operand.number + index, index=None)
+        tail = ":DINT" if wide and device.area != "Z" and DINT in self.plc.memory.types(device) else ""
+        return int(self.plc[f"{device}{tail}"])
 
     def flow(self, position: int) -> bool:
         """Whether power flowed at an instruction in the last recorded scan."""

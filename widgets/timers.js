@@ -2,7 +2,13 @@
 
 panels.timers = (place, layout, page) => {
   const { rows = [], timers = 0, counters = 0 } = layout;
-  const { body } = frame(place, { title: "Timers and counters", sub: `${rows.length} in use`, key: "timers" });
+  const { body } = frame(place, { title: "Timers and counters", sub: `${rows.length} in use`, key: "timers", tools: '<button class="tool" data-testid="seconds" aria-pressed="false" title="Values and presets of timers in seconds">Seconds</button>' });
+  const tool = place.querySelector("[data-testid=seconds]");
+  tool.hidden = !rows.some((one) => one.base_us);
+  let inSeconds = false;
+  let state = {};
+  // A timer's value as it stands, or in seconds, as precise as its time unit.
+  const amount = (one, value) => (inSeconds && one.base_us ? `${seconds(value * one.base_us, { 100000: 1, 10000: 2 }[one.base_us] ?? 3)} s` : number(value));
   const contact = `<svg class="ec mini" width="30" height="20" viewBox="0 0 30 20" role="img"><path class="wire" d="M0 10H9M21 10H30"/><g class="contact open"><rect class="gap" x="9" y="1" width="12" height="18"/><path class="bars" d="M9 1v18M21 1v18"/></g></svg>`;
   const step = `<svg class="ec mini" width="30" height="20" viewBox="0 0 30 20" aria-hidden="true"><g class="step active"><rect class="box" x="2" y="1" width="26" height="18" rx="2"/><circle class="token" cx="15" cy="10" r="3"/></g></svg>`;
   const gauge = (kind = "") =>
@@ -53,13 +59,13 @@ panels.timers = (place, layout, page) => {
     const preset = state[`${one.device}.preset`] ?? 0;
     const on = state[`${one.device}.on`];
     set(line, "data-state", state[`${one.device}.is`] ?? "off");
-    write(line.querySelector(".val b"), number(value));
-    write(line.querySelector(".preset"), number(preset));
+    write(line.querySelector(".val b"), amount(one, value));
+    write(line.querySelector(".preset"), amount(one, preset));
     set(line.querySelector(".contact"), "class", on ? "contact flow" : "contact open");
     set(line.querySelector(".wire"), "class", on ? "wire on" : "wire");
     set(line.querySelector(".mini"), "aria-label", on ? "contact closed" : "contact open");
     set(line.querySelector(".mini"), "data-on", on ? "" : null);
-    draw(line.querySelector(".gauge"), value, preset, one.unit === "counter", one.kind === "DCNT");
+    draw(line.querySelector(".gauge"), value, preset, one.unit === "counter", one.kind === "DCNT" || one.kind === "HCNT");
     const say = line.querySelector(".say");
     const words = bold(state[`${one.device}.say`] ?? "");
     if (say.dataset.words !== words) say.innerHTML = say.dataset.words = words;
@@ -89,8 +95,16 @@ panels.timers = (place, layout, page) => {
     }
   }
 
+  tool.addEventListener("click", () => {
+    inSeconds = !inSeconds;
+    set(tool, "aria-pressed", String(inSeconds));
+    set(body.querySelector(".grid"), "data-seconds", inSeconds ? "" : null);
+    for (const one of rows) show(one, state);
+  });
+
   return {
-    apply(changes, state) {
+    apply(changes, now) {
+      state = now;
       const touched = new Set(Object.keys(changes).map((key) => key.split(".")[0]));
       for (const one of rows) if (touched.has(one.device)) show(one, state);
       if (changes.steps) active(changes.steps);

@@ -4,7 +4,16 @@ from collections.abc import Callable
 
 from .panel import Part
 
-KINDS = {"TON": "timer", "TONR": "timer", "TOF": "timer", "TMON": "timer", "CTU": "counter", "CTR": "counter", "DCNT": "counter"}
+KINDS = {
+    "TON": "timer",
+    "TONR": "timer",
+    "TOF": "timer",
+    "TMON": "timer",
+    "CTU": "counter",
+    "CTR": "counter",
+    "DCNT": "counter",
+    "HCNT": "counter",
+}
 BASES = {100_000: "100 ms", 10_000: "10 ms", 1_000: "1 ms"}
 
 
@@ -70,7 +79,32 @@ WORDS: dict[str, Callable[[int, int, bool, bool, int], tuple[str, str]]] = {
     "CTU": _counts,
     "CTR": _rings,
     "DCNT": _both_ways,
+    "HCNT": _both_ways,
 }
+WIDE = ("DCNT", "HCNT")  # 32 bits, up and down
+RATE_US = 200_000  # simulated time over which a frequency is measured
+
+
+class Rate:
+    """How fast a counter counts, from what it was some simulated time ago."""
+
+    def __init__(self) -> None:
+        self.since: tuple[int, int] | None = None
+        self.hz = 0.0
+
+    def see(self, time_us: int, value: int) -> float:
+        """The counts a second over the last whole stretch of time."""
+        if self.since is None or time_us < self.since[0]:
+            self.since, self.hz = (time_us, value), 0.0
+        elif time_us - self.since[0] >= RATE_US:
+            self.hz = abs(value - self.since[1]) * 1e6 / (time_us - self.since[0])
+            self.since = time_us, value
+        return self.hz
+
+
+def frequency(hz: float) -> str:
+    """A frequency as text: "40 Hz", "4.1 kHz"."""
+    return f"{hz / 1000:,.1f} kHz" if hz >= 1000 else f"{hz:.0f} Hz"
 
 
 class Timers(Part):
@@ -81,6 +115,7 @@ class Timers(Part):
     def __init__(self, rig):
         super().__init__(rig)
         self.rows = self._rows()
+        self._rates = {device: Rate() for device, (_, instruction) in self.rows.items() if instruction.mnemonic == "HCNT"}
 
     def _rows(self):
         rows = {}
@@ -102,11 +137,23 @@ class Timers(Part):
                     "name": self.rig.name(device),
                     "kind": instruction.mnemonic,
                     "unit": unit,
-                    "base": BASES.get(base_us, ""),
+                    "base": BASES.get(base_us, "") or self._counts_what(instruction),
+                    "base_us": base_us,
                     "steps": ", ".join(map(str, used[:4])) + (", …" if len(used) > 4 else ""),
                 }
             )
         return {"rows": rows, "timers": model.areas["T"].count, "counters": model.areas["C"].count, "sfc": bool(self.rig.charted)}
+
+    def _counts_what(self, instruction):
+        """What stands in place of a time unit: "ring", or the inputs that a high-speed counter counts."""
+        fast = self.rig.plc.model.fast_counters.get(instruction.operands[0].number) if instruction.mnemonic == "HCNT" else None
+        return " ".join(f"X{number:o}" for number in fast.inputs) if fast else "ring" if instruction.mnemonic == "CTR" else ""
+
+    def _direction(self, instruction):
+        """The relay that makes an up/down counter count down while it is ON, if it is ON."""
+        model, number = self.rig.plc.model, instruction.operands[0].number
+        relay = f"{model.special_bits}{model.relays['counter direction'] + number}"
+        return relay if self.rig.bit(relay) else ""
 
     def _base_us(self, unit, instruction):
         return self.rig.plc.model.timer_base_us(instruction.operands[0].number) if unit == "timer" else 0
@@ -114,14 +161,23 @@ class Timers(Part):
     def frame(self):
         entries = {}
         for device, (unit, instruction) in self.rows.items():
-            value, preset, on = self.rig.plc[device], self.rig.value(instruction.operands[1]), self.rig.bit(device)
+            value, preset, on = self._now(device, instruction)
             entries[device], entries[f"{device}.preset"], entries[f"{device}.on"] = value, preset, int(on)
             flow = self.rig.flow(instruction.position)
             entries[f"{device}.is"], entries[f"{device}.say"] = WORDS[instruction.mnemonic](
                 value, preset, on, flow, self._base_us(unit, instruction)
             )
+            if instruction.mnemonic == "DCNT" and (relay := self._direction(instruction)):
+                entries[f"{device}.say"] = f"*{relay} on*, counts down"
+            if device in self._rates:
+                hz = self._rates[device].see(self.rig.plc.time_us, value)
+                entries[f"{device}.say"] += f", {frequency(hz)}" if hz else ""
         entries["steps"] = [self._step(device) for device in self.rig.active()]
         return entries
+
+    def _now(self, device, instruction):
+        preset = self.rig.value(instruction.operands[1], wide=instruction.mnemonic in WIDE)
+        return self.rig.plc[device], preset, self.rig.bit(device)
 
     def _step(self, device):
         elapsed_us, scans = self.rig.since(device)

@@ -49,3 +49,39 @@ def test_a_preset_in_a_register_is_the_registers_value(make_rig):
 
 def test_a_program_without_timers_has_no_rows(make_rig):
     assert Timers(make_rig(program="LD X0\nOUT Y0")).layout()["rows"] == []
+
+
+def test_a_high_speed_counter_has_its_inputs_its_preset_of_32_bits_and_a_frequency(make_rig):
+    rig = make_rig(program="LD SM0\nHCNT C236 D10\n")
+    timers = Timers(rig)
+    (row,) = timers.layout()["rows"]
+    assert (row["device"], row["kind"], row["base"], row["base_us"]) == ("C236", "HCNT", "X0", 0)  # table 8-1
+    rig.plc["D10:DINT"] = 1_000_000
+    rig.session.scan(2)
+    rig.plc.square("X0", hz=4000)
+    for _ in range(50):
+        rig.session.scan()
+        frame = timers.frame()
+    assert frame["C236.preset"] == 1_000_000
+    assert abs(frame["C236"] - 2000) <= 4  # 4,000 a second for half a second
+    assert frame["C236.say"].endswith("to go, 4.0 kHz")
+
+
+def test_an_up_down_counter_says_which_relay_makes_it_count_down(make_rig):
+    rig = make_rig(program="LD X0\nDCNT C200 400\nLD X1\nOUT SM200\n")
+    timers = Timers(rig)
+    assert timers.layout()["rows"][0]["base"] == ""
+    for level in (1, 0):
+        rig.plc["X0"] = level
+        rig.session.scan()
+    assert (timers.frame()["C200"], timers.frame()["C200.say"]) == (1, "399 to go")
+    rig.plc["X1"] = 1
+    rig.session.scan(2)
+    for level in (1, 0, 1, 0):
+        rig.plc["X0"] = level
+        rig.session.scan()
+    assert (timers.frame()["C200"], timers.frame()["C200.say"]) == (-1, "*SM200 on*, counts down")
+
+
+def test_a_ring_counter_says_so(make_rig):
+    assert Timers(make_rig(program="LD X0\nCTR C1 4\n")).layout()["rows"][0]["base"] == "ring"
