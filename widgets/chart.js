@@ -1,16 +1,25 @@
 // The sequential function chart: active steps lit, what the selected one waits for in words, and the log of steps taken.
 
-panels.chart = (place, layout, page) => {
-  const { body, sub } = frame(place, { title: "Chart", key: "chart" });
+panels.chart = (place, layout, page, view) => {
+  const tools = `<button class="tool" data-act="hold" data-testid="hold" aria-pressed="false" title="Hold all transitions: the steps stay though conditions are met">${icon("hold")}Hold<span class="more"> transitions</span></button>`;
+  const { section, body, sub } = frame(place, { title: "Chart", key: "chart", tools });
   body.classList.add("split");
   body.innerHTML = `
     <div class="main scroll"></div>
     <aside class="side" aria-label="The selected step">
-      <h3 class="who"></h3><dl class="facts"></dl><hr>
+      <h3 class="who"></h3><dl class="facts"></dl>
+      <div class="acts">
+        <button class="tool" data-act="break" data-testid="break" aria-pressed="false" title="Stop the run when this step begins (B)">${icon("brk")}Break here</button>
+        <button class="tool" data-act="network" data-testid="network" title="Show the step's network in the ladder">${icon("eye")}Network</button>
+        <button class="tool" data-act="set" data-testid="set-step">Set step</button>
+        <button class="tool" data-act="reset" data-testid="reset-step">Reset step</button>
+        <span class="fires"></span>
+      </div><hr>
       <h3>Steps taken</h3><ol class="log" data-testid="log"></ol>
     </aside>`;
   const main = body.querySelector(".main");
   const [who, facts, log] = [".who", ".facts", ".log"].map((part) => body.querySelector(part));
+  const fired = body.querySelector(".fires");
   const boxes = new Map(); // step -> its element, for those that are drawn
   let drawing;
   let state = {};
@@ -39,10 +48,29 @@ panels.chart = (place, layout, page) => {
   roving(main, () => [...boxes.values()]);
   main.addEventListener("keydown", (event) => {
     const device = event.target.dataset?.device;
-    if (event.key !== "Enter" || !boxes.has(device)) return;
+    if (!boxes.has(device) || event.ctrlKey || event.metaKey || event.altKey) return;
+    const act = { Enter: () => choose(device), b: () => page.say("chart", "break", { step: device }), f: () => page.say("chart", "fire", { step: device }) }[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+    if (!act) return;
     event.preventDefault();
-    choose(device);
+    event.stopPropagation();
+    act();
   });
+  const shown = () => chosen ?? (state.active ?? [])[0] ?? Object.keys(layout.steps)[0];
+  section.addEventListener("click", (event) => {
+    const button = event.target.closest("button[data-act]");
+    const step = shown();
+    if (!button || !step) return;
+    const acts = {
+      hold: () => page.say("chart", "hold", { on: !state.held }),
+      break: () => page.say("chart", "break", { step }),
+      network: () => view.parts.ladder?.reveal?.(step),
+      set: () => page.say("chart", "step", { step, on: true }),
+      reset: () => page.say("chart", "step", { step, on: false }),
+      fire: () => page.say("chart", "fire", { step, to: button.dataset.to || null }),
+    };
+    acts[button.dataset.act]();
+  });
+  section.querySelector('[data-act="network"]').hidden = !(page.layout.parts ?? []).includes("ladder");
   function choose(device) {
     chosen = chosen === device ? null : device;
     mark();
@@ -51,7 +79,8 @@ panels.chart = (place, layout, page) => {
   function mark() {
     const active = state.active ?? [];
     for (const [device, node] of boxes) {
-      const words = `${device} ${layout.steps[device].name}`.trim();
+      const broken = device in (state.breaks ?? {}) ? ", breakpoint" : "";
+      const words = `${`${device} ${layout.steps[device].name}`.trim()}${broken}`;
       set(node, "data-on", active.includes(device) ? "" : null);
       set(node, "data-selected", device === chosen ? "" : null);
       set(node, "aria-selected", String(device === chosen));
@@ -77,6 +106,11 @@ panels.chart = (place, layout, page) => {
     if (usual) lines.push(["usual", `${seconds(usual[0], 2)} s, ${number(usual[1])} ${usual[1] === 1 ? "time" : "times"}`]);
     if (step.then.length) lines.push(["then", step.then.map((one) => `<span class="mono">${escaped(one)}</span>`).join(" or ")]);
     const markup = lines.map(([word, text]) => `<dt>${word}</dt><dd>${text}</dd>`).join("");
+    const [ways, active_now] = [step.ways ?? [], Boolean(now)];
+    const fires = ways.map((to) => `<button class="tool" data-act="fire" data-testid="fire-${to.join("-") || "end"}" data-to="${ways.length > 1 ? (to[0] ?? "") : ""}" title="Take this transition now, whether its condition holds or not (F)"${active_now ? "" : " disabled"}>${icon("fire")}Fire → <span class="mono">${escaped(to.join(" ") || "end")}</span></button>`).join("");
+    if (fired.dataset.markup !== fires) fired.innerHTML = fired.dataset.markup = fires;
+    set(section.querySelector('[data-act="break"]'), "aria-pressed", String(device in (state.breaks ?? {})));
+    for (const [act, off] of [["set", active_now], ["reset", !active_now]]) section.querySelector(`[data-act="${act}"]`).disabled = off || page.dead;
     if (facts.dataset.markup !== markup) facts.innerHTML = facts.dataset.markup = markup;
   }
 
@@ -85,6 +119,11 @@ panels.chart = (place, layout, page) => {
       state = now;
       if (changes.svg) draw(changes.svg);
       else drawing?.apply(changes);
+      if ("held" in changes) {
+        set(section.querySelector('[data-act="hold"]'), "aria-pressed", String(Boolean(state.held)));
+        set(section, "data-held", state.held ? "" : null);
+      }
+      if (changes.breaks) mark();
       if (changes.active) {
         write(sub, `${changes.active.length} of ${Object.keys(layout.steps).length} active`);
         mark();

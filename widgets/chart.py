@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ecsim.devices import Device
+from ecsim.errors import EcsimError
 from ecsim.views.flows import Transition
 from ecsim.views.sfc import Chart as Drawing
 from ecsim.views.sfc import chart
@@ -50,6 +51,7 @@ class Chart(Part):
                 device: {
                     "name": self.rig.step_name(device),
                     "outputs": [[self.rig.name(output), output] for output in outputs],
+                    "ways": [[str(step) for step in transition.steps] for transition in self.transitions[device]],
                     "then": list(dict.fromkeys(str(step) for transition in self.transitions[device] for step in transition.steps)),
                 }
                 for device, outputs in self.outputs.items()
@@ -60,7 +62,9 @@ class Chart(Part):
         rig, (_, drawing, svg) = self.rig, self._drawn
         active = [device for device in rig.active() if device in self.outputs]
         met = recorded(rig.plc.trace)
-        entries = {"svg": svg, "active": active, "log": self._steps_taken(), **drawing.state(rig.session)}
+        entries = {"svg": svg, "active": active, "log": self._steps_taken(), "held": int(rig.session.transitions_held)}
+        entries["breaks"] = {point.text: int(point.enabled) for point in rig.session.breakpoints if point.text in self.outputs}
+        entries.update(drawing.state(rig.session))
         for device in active:
             elapsed_us, scans = rig.since(device)
             entries[f"{device}.now"] = {
@@ -77,6 +81,28 @@ class Chart(Part):
         width = min(max(int(width), NARROWEST), WIDEST)
         if width != self._drawn[0]:
             self._drawn = self._draw(width)
+
+    def _step(self, device: str) -> str:
+        if device not in self.outputs:
+            raise EcsimError(f"the chart has no step {device!r}")
+        return device
+
+    def on_break(self, step):
+        """Set a breakpoint on a step, or take it away."""
+        points = self.rig.session.breakpoints
+        points.remove(step) if step in points else points.add(self._step(step))
+
+    def on_hold(self, on):
+        """Hold all transitions, or let them go."""
+        self.rig.session.transitions_held = bool(on)
+
+    def on_fire(self, step, to=None):
+        """Take a transition out of an active step; `to` says which where there is a choice."""
+        self.rig.call(lambda: self.rig.session.fire(self._step(step), to))
+
+    def on_step(self, step, on):
+        """Begin a step or end it by hand."""
+        self.rig.call(lambda: self.rig.session.set_step(self._step(step), bool(on)))
 
     def _steps_taken(self) -> list[list]:
         changes = self.rig.times.changes

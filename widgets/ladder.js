@@ -50,9 +50,21 @@ panels.ladder = (place, layout, page) => {
     if (strip) body.scrollTop = Math.max(0, strip.getBoundingClientRect().top - body.getBoundingClientRect().top + body.scrollTop - 8);
   }
 
+  // Shows the network of a step; whoever asked for it wants to stay there.
+  function reveal(step) {
+    set(follow, "aria-pressed", "false");
+    const [unit, network] = layout.steps[step] ?? [];
+    const strip = drawing?.svg.querySelector(`.net[data-unit="${CSS.escape(unit)}"][data-network="${network}"]`);
+    if (!strip) return;
+    body.scrollTop = Math.max(0, strip.getBoundingClientRect().top - body.getBoundingClientRect().top + body.scrollTop - 8);
+    body.scrollIntoView({ block: "nearest" });
+    strip.querySelector("[data-position]")?.focus({ preventScroll: true });
+  }
+
   const sizes = fitting("ladder", body, page);
 
   return {
+    reveal,
     apply(changes, now) {
       state = now;
       if (changes.svg) draw(changes.svg);

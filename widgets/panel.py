@@ -13,6 +13,8 @@ from typing import Any
 import anywidget
 import traitlets
 
+from ecsim.errors import EcsimError
+
 from .history import changes
 from .rig import Rig
 from .stream import Stream
@@ -158,7 +160,10 @@ class Panel(anywidget.AnyWidget):
         self._asked_in = copy_context()
         if "part" in message:
             values = {key: value for key, value in message.items() if key not in ("part", "do", "asked")}
-            answer = self.parts[message["part"]].receive(message["do"], values)
+            try:
+                answer = self.parts[message["part"]].receive(message["do"], values)
+            except EcsimError as error:  # told in the run control
+                self.rig.refused, answer = str(error), None
             if "asked" in message:
                 self._answer({"n": self.stream.number, "asked": message["asked"], "answer": answer})
             self.show()

@@ -1,6 +1,8 @@
 // Run control: back, run or pause, one scan, next step; the clock; the speed; what the run does, in words.
 
 const SPEEDS = [["¼", 0.25], ["½", 0.5], ["1", 1], ["2", 2], ["5", 5], ["10", 10], ["100", 100], ["max", null]];
+const OCTAGON = '<svg class="ico" width="14" height="14" viewBox="0 0 16 16" aria-hidden="true"><path class="fill" d="M5.3 1.5h5.4l3.8 3.8v5.4l-3.8 3.8H5.3L1.5 10.7V5.3z"/></svg>';
+const EVENT = { step: "s", breakpoint: "b", fault: "f" };
 const DETENT = (at) => 12 + (180 / (SPEEDS.length - 1)) * at;
 
 panels.transport = (place, layout, page) => {
@@ -13,7 +15,7 @@ panels.transport = (place, layout, page) => {
         <div class="keys" role="group" aria-label="Run control">
           ${key("back", "Back", "ArrowLeft", "back")}${key("toggle", "Run", "R", "run", "main")}${key("scan", "One scan", "Space", "scan")}${key("next_step", "Next step", "N", "step")}
         </div>
-        <div class="clock"><span class="label">simulated time</span><span class="big" data-testid="clock"><span class="whole">0</span><small>.000</small><i>s</i></span></div>
+        <div class="clock"><span class="label">simulated time<span class="past"></span></span><span class="big" data-testid="clock"><span class="whole">0</span><small>.000</small><i>s</i></span></div>
         <div class="stats">
           <div class="stat"><span class="label">scan</span><span class="value" data-testid="scans">0</span></div>
           <div class="stat"><span class="label">scan time</span><span class="value wide"><span class="ms">0.0</span><i>ms</i></span></div>
@@ -27,6 +29,17 @@ panels.transport = (place, layout, page) => {
               ${SPEEDS.map(([word], at) => `<path class="detent" d="M${DETENT(at)} 5.5v7"/><text x="${DETENT(at)}" y="31" text-anchor="middle">${word}</text>`).join("")}
               <rect class="thumb" y="1" width="9" height="16" rx="2"/></svg></div></div>
         <span class="chip" role="status" data-testid="chip"><span class="glyph"></span><span class="cut"></span></span>
+        <button class="breaks" data-testid="breaks" aria-expanded="false" aria-haspopup="true" title="Breakpoints">${OCTAGON}<span>0</span></button>
+        <div class="history">
+          <span class="end from">0</span>
+          <div class="line" role="slider" tabindex="0" aria-label="Position in the recorded run" data-testid="history"><b></b><span class="events"></span><u></u></div>
+          <span class="end to">now</span>
+        </div>
+        <div class="points" data-testid="points" hidden>
+          <form><input data-testid="break-text" placeholder="S21, D0 &gt; 100 and X1" aria-label="Stop when" spellcheck="false" autocomplete="off"><button class="btn" data-testid="break-add">Break</button></form>
+          <p class="problem" role="alert" data-testid="break-problem" hidden></p>
+          <ul></ul>
+        </div>
         <div class="below">
           <button class="tool" data-verb="reset" data-testid="reset" title="Power off and on: time, memory and machine start anew">${icon("reset")}Reset</button>
           <button class="toggle" role="switch" data-testid="plant" aria-checked="false"><svg class="tog" width="28" height="16" viewBox="0 0 28 16" aria-hidden="true"><rect class="groove" x=".75" y=".75" width="26.5" height="14.5" rx="7.25"/><circle class="dot" cx="8" cy="8" r="4.5"/></svg><span>Machine connected</span></button>
@@ -76,6 +89,114 @@ panels.transport = (place, layout, page) => {
   });
   slider.addEventListener("pointermove", (event) => slider.hasPointerCapture(event.pointerId) && drag(event));
 
+  // -- the past: the handle stands where the page stands; dragged, the page shows that moment.
+  const line = find(".history .line");
+  let state = {};
+  const last = () => (run.scan ?? 0) + (run.back ?? 0);
+  const share = (scan) => (last() > state.first ? Math.max(0, Math.min(1, (scan - state.first) / (last() - state.first))) : 1);
+  const percent = (scan) => `${(100 * share(scan)).toFixed(2)}%`;
+  let wanted, asking;
+  function seek(scan) {
+    const to = Math.max(state.first ?? 0, Math.min(last(), Math.round(scan)));
+    if (to === wanted || page.dead) return;
+    wanted = to;
+    asking ??= requestAnimationFrame(() => {
+      asking = undefined;
+      page.say("transport", "seek", { scan: wanted });
+    });
+  }
+  const drop = (event) => {
+    const box = line.getBoundingClientRect();
+    seek(state.first + ((event.clientX - box.left) / box.width) * (end - state.first));
+  };
+  let end = 0; // the newest scan when the drag began: the bar does not grow under the hand
+  line.addEventListener("pointerdown", (event) => {
+    if (page.dead || run.state === "failed") return;
+    line.setPointerCapture(event.pointerId);
+    wanted = undefined;
+    end = last();
+    drop(event);
+  });
+  line.addEventListener("pointermove", (event) => line.hasPointerCapture(event.pointerId) && drop(event));
+  line.addEventListener("keydown", (event) => {
+    const scan = run.scan ?? 0;
+    const steps = (state.events ?? []).map(([at]) => at);
+    const to = {
+      ArrowLeft: scan - 1, ArrowDown: scan - 1, ArrowRight: scan + 1, ArrowUp: scan + 1, Home: state.first, End: last(),
+      PageUp: steps.filter((at) => at < scan).pop() ?? state.first, PageDown: steps.find((at) => at > scan) ?? last(),
+    }[event.key];
+    if (to === undefined) return;
+    event.preventDefault();
+    event.stopPropagation();
+    wanted = undefined;
+    seek(to);
+  });
+  function past() {
+    if (state.first === undefined) return;
+    const period = (run.scan_us ?? 0) || 1;
+    set(line.querySelector("b"), "style", `width:${percent(run.scan)}`);
+    set(line.querySelector("u"), "style", `left:${percent(run.scan)}`);
+    write(find(".history .from"), seconds(Math.max(0, (run.time_us ?? 0) - (run.scan - state.first) * period)));
+    write(find(".history .to"), run.back || page.dead ? seconds((run.time_us ?? 0) + (run.back_us ?? 0)) : "now");
+    write(find(".clock .past"), run.back ? `−${run.back_us < 1e6 ? `${number(run.back_us / 1000)} ms` : `${seconds(run.back_us, 2)} s`}` : "");
+    set(line, "aria-valuemin", state.first);
+    set(line, "aria-valuemax", last());
+    set(line, "aria-valuenow", run.scan);
+    set(line, "aria-valuetext", `${seconds(run.time_us ?? 0)} s, ${run.back ? `${number(run.back)} scans back` : "now"}`);
+    set(line, "aria-disabled", page.dead ? "true" : null);
+    [...line.querySelectorAll(".ev")].forEach((node, at) => state.events[at] && set(node, "style", `left:${percent(state.events[at][0])}`));
+  }
+  function events() {
+    line.querySelector(".events").innerHTML = (state.events ?? [])
+      .map(([scan, kind, words]) => `<i class="ev ${EVENT[kind]}" title="${escaped(`${words}, scan ${number(scan)}`)}"></i>`)
+      .join("");
+  }
+
+  // -- breakpoints: a list under its button; what cannot be read is refused there and the field keeps it.
+  const [button, points, form, problem] = [".breaks", ".points", ".points form", ".problem"].map(find);
+  const field = form.querySelector("input");
+  const unfold = (open) => {
+    points.hidden = !open;
+    set(button, "aria-expanded", String(open));
+    (open ? field : button).focus();
+  };
+  button.addEventListener("click", () => unfold(points.hidden));
+  points.addEventListener("keydown", (event) => {
+    if (event.key === "Escape") unfold(false);
+    event.stopPropagation();
+  });
+  let written = "";
+  form.addEventListener("submit", (event) => {
+    event.preventDefault();
+    written = field.value.trim().replace(/\s+/g, " ");
+    if (written) page.say("transport", "break_add", { text: written });
+  });
+  points.querySelector("ul").addEventListener("click", (event) => {
+    const text = event.target.closest("li")?.dataset.text;
+    const verb = event.target.closest("button")?.dataset.act;
+    if (verb === "remove") page.say("transport", "break_remove", { text });
+    if (verb === "enable") page.say("transport", "break_enable", { text, on: event.target.closest("button").getAttribute("aria-checked") !== "true" });
+  });
+  function breaks() {
+    const list = state.breaks ?? [];
+    write(button.querySelector("span"), String(list.length));
+    set(button, "aria-label", `${list.length} ${list.length === 1 ? "breakpoint" : "breakpoints"}`);
+    points.querySelector("ul").innerHTML = list
+      .map(
+        ([text, on, hits, why], at) => `<li data-text="${escaped(text)}" class="${on && !why ? "" : "off"}">
+          <button role="switch" aria-checked="${Boolean(on)}" data-act="enable" data-testid="break-${at}" aria-label="${escaped(text)}" title="${on ? "Switch off" : "Switch on"}">${OCTAGON}</button>
+          <span class="mono">${escaped(text)}</span><span class="dim">${why ? escaped(why) : `${on ? "" : "off, "}${number(hits)} ${hits === 1 ? "stop" : "stops"}`}</span>
+          <button class="tool" data-act="remove" data-testid="break-${at}-remove" aria-label="Remove ${escaped(text)}" title="Remove">${icon("cross", 12)}</button></li>`,
+      )
+      .join("");
+    if (written && list.some(([text]) => text === written)) {
+      if (field.value.trim().replace(/\s+/g, " ") === written) field.value = "";
+      written = "";
+    }
+    problem.hidden = !state.problem;
+    write(problem, state.problem ?? "");
+  }
+
   function say() {
     const words = {
       running: ["run", "", run.mode === "RUN" ? "Running" : "Running, PLC in STOP"],
@@ -84,7 +205,9 @@ panels.transport = (place, layout, page) => {
       failed: ["cross", "fault", run.error],
     };
     let [glyph, kind, text] = words[run.state] ?? words.stopped;
-    if (run.back && run.state === "paused") [glyph, kind, text] = ["back", "past", `${number(run.back)} ${run.back === 1 ? "scan" : "scans"} back`];
+    if (run.back) [glyph, kind, text] = ["back", "past", `${number(run.back)} ${run.back === 1 ? "scan" : "scans"} back`];
+    if (run.hit) [glyph, kind, text] = ["brk", "brk", `Stopped: ${run.hit}${/^S\d+$/.test(run.hit) ? " began" : ""}`];
+    if (run.held && kind === "") text += ", transitions held";
     if (run.fault && run.state !== "failed") [glyph, kind, text] = ["cross", "fault", run.fault];
     if (run.refused) [glyph, kind, text] = ["cross", "fault", run.refused];
     if (page.dead) [glyph, kind, text] = ["unplugged", "dead", "Not connected: the last state"];
@@ -119,7 +242,12 @@ panels.transport = (place, layout, page) => {
 
   return {
     press,
-    apply() {},
+    apply(changes, now) {
+      state = now;
+      if (changes.events) events();
+      if (changes.breaks || "problem" in changes) breaks();
+      past();
+    },
     run(now) {
       run = now;
       const [whole, part] = seconds(run.time_us ?? 0).split(".");
@@ -137,10 +265,12 @@ panels.transport = (place, layout, page) => {
       set(slider, "aria-valuenow", at);
       set(slider, "aria-valuetext", run.speed === null ? "as fast as possible" : `${run.speed} times real time`);
       set(plant, "aria-checked", String(Boolean(run.plant)));
+      past();
       say();
       keys();
     },
     rest() {
+      past();
       say();
       keys();
     },

@@ -119,6 +119,7 @@ class ChartLive:
         """Every entry at this moment."""
         plc = getattr(moment, "plc", moment)
         since: dict[str, int] = getattr(moment, "step_since", {})
+        points = {point.text: point for point in getattr(moment, "breakpoints", ())}
         memory = plc.memory
         same = self.program is None or plc.program is self.program
         trace = plc.trace if plc.running and plc.tracing and same else None
@@ -128,6 +129,8 @@ class ChartLive:
             active = bool(steps[device.number])
             entries[f"{device}:class"] = "step active" if active else "step"
             began = since.get(str(device)) if active else None
+            point = points.get(str(device))
+            entries[f"k{device}:class"] = "breakpoint none" if point is None else "breakpoint" if point.enabled else "breakpoint off"
             entries[f"t{device}:text"] = "" if began is None else f"{max(0, plc.time_us - began) / 1e6:,.2f} s"
         for node in self.joins:
             self._join(entries, node, steps)

@@ -256,6 +256,8 @@ class ChartSheet:
         parts.append(s.element("circle", None, class_="token", cx=x, cy=y + 31, r=3.25))
         yield s.element("g", "".join(parts), id=f"{prefix}{device}", class_="step", data_device=str(device), aria_label=str(label))
         yield s.text(left - 9, y + 24, "", "step-time end", id=f"{prefix}t{device}")
+        octagon = f"M{s.number(left - 6.3)} {s.number(y - 11)}h6.6l4.7 4.7v6.6l-4.7 4.7h-6.6l-4.7 -4.7v-6.6z"
+        yield s.element("path", None, id=f"{prefix}k{device}", class_="breakpoint none", d=octagon)
         if actions:
             yield f'<path class="link" d="M{s.number(x + STEP / 2)} {s.number(y + 20)}h14"/>'
             top = y + 20 - ROW * len(actions) / 2 if len(actions) < 3 else y + 20 - ROW / 2

@@ -4,6 +4,8 @@ import pytest
 from ecsim_widgets.chart import Chart
 from ecsim_widgets.ladder import Ladder
 
+from ecsim import EcsimError
+
 
 @pytest.fixture
 def holding(rig):
@@ -19,7 +21,7 @@ def holding(rig):
 def test_every_step_has_its_name_outputs_and_followers(rig):
     steps = Chart(rig).layout()["steps"]
     assert list(steps) == ["S0", "S20"]
-    assert steps["S20"] == {"name": "hold it", "outputs": [["", "Y2"], ["Settle", "T0"]], "then": ["S0"]}
+    assert steps["S20"] == {"name": "hold it", "outputs": [["", "Y2"], ["Settle", "T0"]], "ways": [["S0"]], "then": ["S0"]}
 
 
 def test_the_active_step_tells_what_it_does_and_waits_for(holding):
@@ -74,3 +76,42 @@ def test_the_ladder_knows_where_each_step_begins(rig):
     assert list(steps) == ["S0", "S20"]
     assert steps["S0"][0] == "MAIN"
     assert steps["S0"][1] < steps["S20"][1]
+
+
+def test_a_breakpoint_is_set_on_a_step_and_taken_away(rig):
+    chart = Chart(rig)
+    chart.receive("break", {"step": "S20"})
+    assert [point.text for point in rig.session.breakpoints] == ["S20"]
+    assert chart.frame()["breaks"] == {"S20": 1}
+    assert chart.frame()["kS20:class"] == "breakpoint"
+    rig.session.breakpoints.enable("S20", False)
+    assert chart.frame()["kS20:class"] == "breakpoint off"
+    chart.receive("break", {"step": "S20"})
+    assert (len(rig.session.breakpoints), chart.frame()["kS20:class"]) == (0, "breakpoint none")
+    with pytest.raises(EcsimError, match="no step 'X0'"):
+        chart.receive("break", {"step": "X0"})
+
+
+def test_held_transitions_fire_by_hand(rig):
+    chart = Chart(rig)
+    rig.session.scan(2)
+    chart.receive("hold", {"on": True})
+    rig.put("X0", 1)
+    rig.session.scan(3)
+    assert (chart.frame()["active"], chart.frame()["held"]) == (["S0"], 1)
+    chart.receive("fire", {"step": "S0"})
+    assert chart.frame()["active"] == ["S20"]
+    assert [entry[1:3] for entry in chart.frame()["log"]][0] == ["S0", "S20"]
+    chart.receive("fire", {"step": "S0"})
+    assert "S0 is not active" in rig.run()["refused"]
+    chart.receive("hold", {"on": False})
+    assert chart.frame()["held"] == 0
+
+
+def test_a_step_is_set_and_reset_by_hand(rig):
+    chart = Chart(rig)
+    rig.session.scan(2)
+    chart.receive("step", {"step": "S20", "on": True})
+    assert chart.frame()["active"] == ["S0", "S20"]
+    chart.receive("step", {"step": "S0", "on": False})
+    assert chart.frame()["active"] == ["S20"]
