@@ -14,6 +14,7 @@ from .devices import Device
 from .errors import EcsimError
 from .hardware.pulses import Wired
 from .hardware.unit import Unit
+from .hardware.wire import Wire
 from .plc import Plc
 from .values import BOOL
 from .views.svg import tokens
@@ -292,14 +293,7 @@ class Recording:
         colour, rows = tokens(), len(self.names)
         for place, name in enumerate(self.names):
             self._row(axes, name, rows - 1 - place, begin, end, colour)
-        ink, hair = colour["--ec-text-2"], colour["--ec-hair"]
-        axes.set(xlim=(begin, end), ylim=(-0.2, rows), xlabel="ms")
-        axes.set_yticks([row + HEIGHT / 2 for row in range(rows)], reversed(self.names))
-        axes.tick_params(length=0, colors=ink)
-        axes.xaxis.label.set_color(ink)
-        axes.grid(axis="x", color=hair, linewidth=0.8)
-        axes.set_axisbelow(True)
-        axes.spines[:].set_visible(False)
+        _frame(axes, (begin, end), list(reversed(self.names)), colour)
         if cursors:
             self._cursors(axes, cursors, colour)
         return axes
@@ -370,6 +364,17 @@ class Recording:
 
     def __repr__(self) -> str:
         return f"<Recording of {', '.join(self.names)}: {len(self)} changes>"
+
+
+def _frame(axes, span: tuple[float, float], names: list[str], colour) -> None:
+    """What all timing diagrams have around their rows, the lowest of them first."""
+    axes.set(xlim=span, ylim=(-0.2, len(names)), xlabel="ms")
+    axes.set_yticks([row + HEIGHT / 2 for row in range(len(names))], names)
+    axes.tick_params(length=0, colors=colour["--ec-text-2"])
+    axes.xaxis.label.set_color(colour["--ec-text-2"])
+    axes.grid(axis="x", color=colour["--ec-hair"], linewidth=0.8)
+    axes.set_axisbelow(True)
+    axes.spines[:].set_visible(False)
 
 
 def interval(us: float, scans: int) -> str:
@@ -534,3 +539,35 @@ class PulseTrain:
 
     def __repr__(self) -> str:
         return f"<PulseTrain of {self.name}: {len(self)} pulses>"
+
+
+def plot_line(wire: Wire, ms: tuple[float, float] | None = None, axes=None):
+    """Draw who spoke when on a serial line into matplotlib axes, new ones without any given; gives the axes.
+
+    A row for each end that has spoken, a bar for each message as long as it took, with as many of its bytes as there is room for. `ms` is the
+    stretch of the wire's time to show, all of its log without it.
+    """
+    spans = [(begin / 1000, end / 1000, name, text) for begin, end, name, text in wire.spans]
+    begin, end = ms or (min((span[0] for span in spans), default=0), max((span[1] for span in spans), default=1))
+    shown = [span for span in spans if span[1] > begin and span[0] < end]
+    names = sorted({name for _, _, name, _ in shown})
+    if axes is None:
+        from matplotlib import pyplot
+
+        axes = pyplot.subplots(figsize=(9.5, 0.5 * len(names) + 0.9), layout="constrained")[1]
+    colour = tokens()
+    for place, name in enumerate(reversed(names)):
+        of_name = [span for span in shown if span[2] == name]
+        look = {"facecolor": colour["--ec-active-soft"], "edgecolor": colour["--ec-active"], "linewidth": 1.2}
+        axes.hlines(place + HEIGHT / 2, begin, end, color=colour["--ec-dead"], linewidth=1, zorder=0)
+        axes.broken_barh([(first, last - first) for first, last, _, _ in of_name], (place, HEIGHT), **look)
+        for first, last, _, text in of_name:
+            words = bytes.fromhex(text).hex(" ").upper()
+            room = int((last - first) / (0.5 * ROOM * (end - begin)))  # the characters that fit; they are narrow
+            if len(words) > room:
+                words = f"{words[: (room - 1) // 3 * 3]}…"
+            if len(words) > 3:
+                style = {"ha": "center", "va": "center", "fontsize": 8, "family": "monospace", "clip_on": True}
+                axes.text((first + last) / 2, place + HEIGHT / 2, words, color=colour["--ec-active-text"], **style)
+    _frame(axes, (begin, end), list(reversed(names)), colour)
+    return axes

@@ -7,7 +7,9 @@ from matplotlib import pyplot
 
 from ecsim import EcsimError, Plc, Recording
 from ecsim import record as record_module
-from ecsim.record import LogicAnalyser, PulseTrain
+from ecsim.hardware.serial import PortSettings
+from ecsim.record import LogicAnalyser, PulseTrain, plot_line
+from ecsim.system import SystemBlock
 
 matplotlib.use("Agg")
 
@@ -412,4 +414,30 @@ def test_a_diagram_shows_steps_cursors_and_pins(chart):
     assert "S0" in words
     pins = {each.get_gid(): each.get_offsets().tolist() for each in axes.collections if each.get_gid()}
     assert pins == {"pins of Y1": [[30, 2.64]]}  # the third row from below, on for one scan
+    pyplot.close("all")
+
+
+def test_a_line_shows_who_spoke_when_and_what():
+    class Parrot:
+        def hear(self, message):
+            return b"\x0a\x0b" * 2
+
+    plc = Plc("EC20", system=SystemBlock(port1=PortSettings("freeport", baud=9600)))
+    plc.load("LD SM1\nXMT 1 D0 3")
+    plc.run()
+    plc.ports[1].connect(Parrot(), delay_ms=2)
+    plc.set({"D0": 1, "D1": 0x22, "D2": 255})
+    plc.scan(5)
+    # a character of 10 bits at 9600 baud takes 1.0417 ms; the parrot hears 3.5 of them of silence and waits for 2 ms
+    sent, answer = plc.ports[1].wire.spans
+    assert sent == (0, 3125, "port 1", "0122ff")
+    assert answer == (3125 + 3645 + 2000, 3125 + 3645 + 2000 + 4166, "Parrot", "0a0b0a0b")
+    axes = plot_line(plc.ports[1].wire)
+    assert [label.get_text() for label in axes.get_yticklabels()] == ["port 1", "Parrot"]
+    assert axes.get_xlim() == pytest.approx((0, 12.936))
+    assert {text.get_text() for text in axes.texts} == {"01 22 FF", "0A 0B 0A 0B"}
+    bars = [path.get_extents().bounds for each in axes.collections for path in each.get_paths() if len(path.vertices) > 2]
+    assert [(x, width) for x, _, width, _ in bars] == [pytest.approx((0, 3.125)), pytest.approx((8.77, 4.166))]
+    assert {text.get_text() for text in plot_line(plc.ports[1].wire, ms=(0, 60)).texts} == {"01 …", "0A 0B …"}
+    assert [label.get_text() for label in plot_line(plc.ports[1].wire, ms=(0, 5)).get_yticklabels()] == ["port 1"]
     pyplot.close("all")

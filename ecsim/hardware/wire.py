@@ -282,6 +282,11 @@ class Wire:
         """The last 10,000 messages as (begin in us, name of the sender, bytes in hex), in order of time."""
         return sorted(entry[:3] for entry in self._log)
 
+    @property
+    def spans(self) -> list[tuple[int, int, str, str]]:
+        """The same messages with their ends, as (begin, end, name of the sender, bytes in hex)."""
+        return sorted((begin, end, name, text) for begin, name, text, end in self._log)
+
     # -- time of the stations -----------------------------------------------------------------------------------
 
     def next(self) -> int | None:
