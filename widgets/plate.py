@@ -48,7 +48,7 @@ class Plated(Part):
     def receive(self, verb, values):
         """Between two scans, since a frame may be made at any other moment."""
         with self.rig.session.held():
-            super().receive(verb, values)
+            return super().receive(verb, values)
 
     # -- what the page may do -----------------------------------------------------------------------------------
 
