@@ -212,7 +212,7 @@ class Programming:
     def clear(self, what: str) -> None:
         """Clear "devices", the "program" or the "data block" (2.4.4); raises EcsimError in RUN. Forced devices stay forced."""
         acts = {"devices": self._clear_devices, "program": self._clear_program, "data block": self._clear_data_block}
-        if what not in acts:
+        if not isinstance(what, str) or what not in acts:
             raise EcsimError(f"{what!r} cannot be cleared; choose {', '.join(acts)}")
         self._demand_stop(f"the {what}")
         acts[what]()

@@ -118,6 +118,12 @@ class Project:
 
     def check(self, model: Model) -> None:
         """Raise EcsimError unless this is a project for the model, with settings that it has."""
+        kinds = {"files": dict, "protected": dict, "system": SystemBlock, "passwords": Passwords}
+        for name, kind in kinds.items():
+            if not isinstance(given := getattr(self, name), kind) and (given is not None or kind is dict):
+                raise EcsimError(f"{name} of a project is {given!r:.40}; it is a {kind.__name__}")
+        if wrong := [name for name, text in self.files.items() if not isinstance(text, str)]:
+            raise EcsimError(f"the file {wrong[0]!r} of a project is {self.files[wrong[0]]!r:.40}; it is a text")
         if self.model is not None and self.model != model.name:
             raise EcsimError(f"{self.name or 'this'} is a project for {self.model}, this is an {model.name}; make a Plc({self.model!r})")
         if self.io is not None:

@@ -292,7 +292,7 @@ class States:
     # -- errors -------------------------------------------------------------------------------------------------
 
     def _part(self, part: str) -> int:
-        code = self.health.parts.get(part)
+        code = self.health.parts.get(part) if isinstance(part, str) else None
         if code is None:
             raise EcsimError(f"{self.model.name} has no part {part!r} to be damaged; it has {', '.join(self.health.parts)}")
         return code

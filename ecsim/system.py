@@ -45,6 +45,9 @@ class SystemBlock:
 
     def check(self, model: Model) -> None:
         """Raise EcsimError for a setting that the model does not have."""
+        for table in ("retain", "data_block", "stop_output_table", "interrupt_priority", "modules"):
+            if not isinstance(getattr(self, table), dict):
+                raise EcsimError(f"{table} is {getattr(self, table)!r:.40}; write a dict, as retain={{'D': [(100, 199)]}} is one")
         if self.stop_outputs not in STOP_OUTPUTS:
             raise EcsimError(f"stop_outputs is {self.stop_outputs!r}; choose {' or '.join(STOP_OUTPUTS)}")
         for switch in ("hold_values", "data_block_valid", "no_battery", "format_lock"):
@@ -71,6 +74,8 @@ class SystemBlock:
         self._check_modules(model)
         for number, port in enumerate((self.port0, self.port1)):
             if port is not None:
+                if not isinstance(port, PortSettings):
+                    raise EcsimError(f"port{number} is {port!r:.40}; write PortSettings, for example PortSettings('freeport')")
                 port.check(model, number)
 
     def _check_retention(self, model: Model) -> None:
@@ -78,6 +83,8 @@ class SystemBlock:
         for area, ranges in self.retain.items():
             if area not in model.retained:
                 raise EcsimError(f"{model.name} cannot retain {area}; it retains {', '.join(model.retained)}")
+            if not isinstance(ranges, (list, tuple)) or not all(isinstance(each, (list, tuple)) and len(each) == 2 for each in ranges):
+                raise EcsimError(f"retain of {area} is {ranges!r:.40}; write a list of ranges, for example [(100, 199)]")
             if len(ranges) > model.retention_limits.get("ranges", len(ranges)):
                 raise EcsimError(f"retain has {len(ranges)} ranges of {area}; {model.name} takes {model.retention_limits['ranges']}")
             count = model.areas[area].count

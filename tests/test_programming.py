@@ -424,3 +424,26 @@ def test_requests_of_high_priority_are_served_first(priority, order):
         plc.interrupts.fire(event)
     plc.scan()
     assert [plc["D1"], plc["D2"], plc["D3"]] == order
+
+
+@pytest.mark.parametrize(
+    ("project", "says"),
+    [
+        (Project("LD X0"), "files of a project is 'LD X0'; it is a dict"),
+        (Project({"a.il": 5}), "the file 'a.il' of a project is 5; it is a text"),
+        (Project({"a.il": "LD X0\nOUT Y0"}, system={"watchdog_ms": 5}), "system of a project is .*; it is a SystemBlock"),
+        (Project({"a.il": "LD X0\nOUT Y0"}, passwords="abc"), "passwords of a project is 'abc'; it is a Passwords"),
+    ],
+)
+def test_a_project_of_other_things_is_told_and_changes_nothing(project, says):
+    plc = machine()
+    program, system = plc.program, plc.system
+    with pytest.raises(EcsimError, match=says):
+        plc.load(project)
+    assert (plc.program, plc.system) == (program, system)
+
+
+@pytest.mark.parametrize("act", [lambda plc: plc.clear(["devices"]), lambda plc: plc.damage(["program"]), lambda plc: plc.repair({})])
+def test_what_is_no_name_is_told(act):
+    with pytest.raises(EcsimError, match=r"cannot be cleared|has no part"):
+        act(machine())

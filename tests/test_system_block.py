@@ -118,3 +118,19 @@ def test_a_program_may_be_loaded_while_a_session_runs_the_plc():
     assert moved.wait(5)
     assert (session.state, session.error) == ("running", None)
     session.stop()
+
+
+@pytest.mark.parametrize(
+    ("setting", "says"),
+    [
+        ({"retain": [("D", 100, 199)]}, "retain is .*; write a dict"),
+        ({"retain": {"D": (100, 199)}}, r"retain of D is \(100, 199\); write a list of ranges, for example \[\(100, 199\)\]"),
+        ({"retain": {"D": 5}}, "retain of D is 5; write a list of ranges"),
+        ({"data_block": [5]}, r"data_block is \[5\]; write a dict"),
+        ({"interrupt_priority": "high"}, "interrupt_priority is 'high'; write a dict"),
+        ({"port1": "freeport"}, r"port1 is 'freeport'; write PortSettings, for example PortSettings\('freeport'\)"),
+    ],
+)
+def test_a_setting_of_another_kind_is_told(setting, says):
+    with pytest.raises(EcsimError, match=says):
+        Plc("EC20", system=SystemBlock(**setting))
