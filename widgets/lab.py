@@ -17,6 +17,7 @@ from .devices import Devices
 from .editor import Editor
 from .ladder import Ladder
 from .machine import Machine
+from .microscope import Microscope
 from .panel import Panel, Part
 from .rig import Rig, Terminals
 from .timers import Timers
@@ -24,7 +25,7 @@ from .trace import Trace
 from .transport import Transport
 from .unit import Unit
 
-PARTS = {part.key: part for part in (Transport, Unit, Machine, Chart, Ladder, Trace, Timers, Devices, Editor)}
+PARTS = {part.key: part for part in (Transport, Unit, Machine, Chart, Ladder, Microscope, Trace, Timers, Devices, Editor)}
 
 
 def parts_of(rig: Rig) -> list[str]:
@@ -96,7 +97,8 @@ class Lab(Panel):
         return self.rig.session
 
     def panel(self, key: str) -> Panel:
-        """One panel of this lab alone: "transport", "unit", "machine", "chart", "ladder", "trace", "timers", "devices" or "editor"."""
+        """One panel of this lab alone: "transport", "unit", "machine", "chart", "ladder", "microscope", "trace", "timers", "devices",
+        "editor"."""
         there = [*parts_of(self.rig), Editor.key]
         if key not in there:
             raise ValueError(f"there is no panel {key!r} here; there are {', '.join(there)}")
