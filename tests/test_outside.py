@@ -4,6 +4,7 @@ import os
 import select
 import socket
 import tty
+from time import monotonic
 
 import pytest
 
@@ -26,9 +27,9 @@ def terminal():
     os.close(theirs)
 
 
-def session(program, settings, name):
+def session(program, settings, name, model="EC20"):
     """A session in real time with a PLC whose port 1 is set up so."""
-    plc = Plc("EC20", input_filter_ms=0, system=SystemBlock(port1=settings))
+    plc = Plc(model, input_filter_ms=0, system=SystemBlock(port1=settings))
     plc.load(program)
     plc.run()
     return Session(plc, name=name)
@@ -69,6 +70,35 @@ def test_a_request_that_comes_in_pieces_is_one_frame(terminal):
         for octet in REQUEST:
             os.write(ours, bytes((octet,)))
         assert hear(ours, 7)[:3] == HEAD
+    finally:
+        lab.stop()
+
+
+@pytest.mark.parametrize(
+    ("program", "request_", "answer", "stored"),
+    [
+        (
+            "LD SM1\nMOV 5 D0\nMOV 3 D1\nMOV 1 D5\nLD SM12\nMODBUS 1 D0 D100",
+            "050300000001858e",
+            "050302123444f3",
+            {"D103": 0x12, "D104": 0x34},
+        ),
+        ("LD SM12\nEVRD 1 1 2 D100", "01030002000125ca", "0103021234b533", {"D100": 0x1234}),
+    ],
+)
+def test_a_master_asks_over_a_pseudo_terminal(terminal, program, request_, answer, stored):
+    ours, theirs = terminal
+    lab = session(program, PortSettings("modbus master", station=31, timeout_ms=20_000), "outside-master", "EC10")
+    try:
+        lab.connect(1, theirs)
+        lab.run()
+        assert hear(ours, 8).hex() == request_
+        os.write(ours, bytes.fromhex(answer))
+        deadline = monotonic() + PATIENCE_S
+        while not lab.plc["SM135"] and monotonic() < deadline:
+            pass
+        assert (lab.plc["SM136"], lab.plc["SD139"]) == (0, 0)
+        assert {name: lab.plc[name] for name in stored} == stored
     finally:
         lab.stop()
 
