@@ -4,6 +4,7 @@ import pytest
 
 from ecsim.hardware.serial import PortSettings
 from ecsim.hardware.wire import Framing
+from ecsim.network import Network
 from ecsim.plc import Plc
 from ecsim.system import SystemBlock
 
@@ -142,3 +143,35 @@ def test_a_function_that_is_none_is_not_sent(function):
     plc.set({"D1": function})
     plc.advance(ms=50)
     assert (script.requests, plc["SD139"]) == ([], 1)
+
+
+def with_slave(scan_ms=10, **settings):
+    """A master and an EC20 as station 5 on one wire; both run."""
+    master = Plc("EC20", input_filter_ms=0, system=SystemBlock(port1=PortSettings("modbus master", **settings)))
+    master.load("LD M0\nMODBUS 1 D0 D100")
+    block = SystemBlock(watchdog_ms=1000, port1=PortSettings("modbus slave", station=5))
+    slave = Plc("EC20", scan_ms=scan_ms, input_filter_ms=0, system=block)
+    network = Network(master=master, slave=slave)
+    network.wire("master.1", "slave.1")
+    master.run()
+    slave.run()
+    return network, master, slave
+
+
+def test_the_first_example_of_the_manual():
+    # 10.4.14: 29 bits of station 5 from address 11 on, Y13 to Y47, packed from the lowest bit up and filled with zeros
+    network, master, slave = with_slave()
+    printed = "00110000101101100011011100001"  # as it prints them, address 39 first
+    slave.set({f"Y{11 + place:o}": int(bit) for place, bit in enumerate(reversed(printed))})
+    master.set(dict(zip([f"D{place}" for place in range(6)], (5, 1, 0, 11, 0, 29), strict=True)) | {"M0": 1})
+    network.advance(ms=100)
+    assert [master[f"D{place}"] for place in range(100, 107)] == [5, 1, 4, 0b11100001, 0b11000110, 0b00010110, 0b00110]
+
+
+@pytest.mark.parametrize(("timeout_ms", "code"), [(200, 0x10), (350, 0)])
+def test_a_slave_with_scans_of_300_ms_needs_a_time_out_beyond_them(timeout_ms, code):
+    # 10.4.14 has these scans and recommends 350 ms
+    network, master, _ = with_slave(scan_ms=300, timeout_ms=timeout_ms)
+    master.set({"D0": 5, "D1": 3, "D5": 1, "M0": 1})
+    network.advance(ms=900)
+    assert (master["SM135"], master["SD139"]) == (1, code)
