@@ -13,6 +13,7 @@ from ..plant import Faulty, Point, towards
 
 FULL = 500.0  # the tank runs over
 BOTTOM, LOW, HIGH = 50.0, 150.0, 400.0  # where the float switches are
+MARKS = (0.0, BOTTOM, LOW, HIGH, inf)
 PUMP = 12.0  # l/s of one pump at its speed
 RUN_UP_S = 1.0  # of a pump, and as long to stand still
 LEAK = 18.0  # l/s
@@ -76,6 +77,8 @@ class Tank(Faulty):
     _bend: float = field(default=0.0, init=False, repr=False)  # and how it changes, l/s²
     _edge: str = field(default="", init=False, repr=False)  # "full" while it runs over, "dry" while there is nothing to draw
     _steady_s: float = field(default=0.0, init=False, repr=False)
+    _sensors: dict[str, int] = field(default_factory=dict, init=False, repr=False)
+    _between: tuple[float, float] = field(default=(0.0, 0.0), init=False, repr=False)  # litres: so long the sensors say the same
 
     def __post_init__(self):
         if not 0 <= self.water <= FULL:
@@ -106,13 +109,9 @@ class Tank(Faulty):
         self._move(seconds)
         self._steady_s -= seconds
         water = self.water + 1e-6
-        return {
-            "X1": int(water >= BOTTOM),
-            "X2": int(water >= LOW),
-            "X3": int(water >= HIGH and "float hangs" not in self.faults),
-            "X4": int("A trips" not in self.faults),
-            "X5": int("B trips" not in self.faults),
-        }
+        if not self._between[0] <= water < self._between[1]:
+            self._look(water)
+        return self._sensors
 
     def state(self) -> tuple:
         """Everything the machine is, as a value; `restore` takes it back."""
@@ -170,6 +169,18 @@ class Tank(Faulty):
         if not edge and (rising or falling):
             ends.append(_until((FULL if rising else 0.0) - self.water, self._flow, self._bend))
         self._steady_s = max(min(ends), INSTANT)
+        self._look(self.water + 1e-6)
+
+    def _look(self, water):
+        """What float switches and overload relays say."""
+        self._between = max(mark for mark in MARKS if mark <= water), min(mark for mark in MARKS if mark > water)
+        self._sensors = {
+            "X1": int(water >= BOTTOM),
+            "X2": int(water >= LOW),
+            "X3": int(water >= HIGH and "float hangs" not in self.faults),
+            "X4": int("A trips" not in self.faults),
+            "X5": int("B trips" not in self.faults),
+        }
 
 
 def _until(way: float, flow: float, bend: float) -> float:
