@@ -74,6 +74,7 @@ class Arm(Faulty):
 
     _outputs: tuple[int, ...] = field(default=(0,) * 4, init=False, repr=False)
     _rates: tuple[float, float, float] = field(default=(0.0,) * 3, init=False, repr=False)  # carriage, cylinder, gripper, a second
+    _closed: bool = field(default=False, init=False, repr=False)  # the gripper; what it did not catch in closing it does not catch later
     _comes_s: float = field(default=inf, init=False, repr=False)  # until the next part
     _away_s: float = field(default=inf, init=False, repr=False)  # until the place is cleared
     _strain_s: float = field(default=inf, init=False, repr=False)  # until driving against an end does harm
@@ -159,8 +160,10 @@ class Arm(Faulty):
             self.occupied, self._away_s = False, inf
         if self.occupied and (above != "place" or rates[1] < 0) and "place blocked" not in self.faults:
             self._away_s = min(self._away_s, self.clears_s)
-        if self.gripper == 1 and not rates[2] and above == "nest" and self.nest and "slips" not in self.faults:
+        closed = self.gripper == 1 and not rates[2]
+        if closed and not self._closed and above == "nest" and self.nest and "slips" not in self.faults:
             self.holds = True
+        self._closed = closed
         if self.holds and self.nest and rates[1] < 0:
             self._lift_out()
         if self.holds and rates[2] < 0:

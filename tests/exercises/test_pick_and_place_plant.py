@@ -133,14 +133,18 @@ def test_a_part_on_another_one_is_noted():
     assert whats(plant) == ["a part is set on another one"]
 
 
+def test_what_slipped_is_caught_by_closing_again_only():
+    plant = Arm((1.0,))
+    plant.fail("slips")
+    assert "X6" not in run(plant, *FETCH)
+    plant.fail("slips", on=False)
+    assert "X6" not in run(plant, (2.0, "Y2 Y3"))
+    assert "X6" in run(plant, (0.2, "Y2"), (0.3, "Y2 Y3"))
+
+
 @pytest.mark.parametrize(
     ("fault", "phases", "switch"),
-    [
-        ("slips", FETCH, "X6"),
-        ("no air", ((0.7, "Y2"),), "X5"),
-        ("carriage jams", ((1.7, "Y0"),), "X3"),
-        ("place blocked", (*PUT, (4.0, "")), "X7"),
-    ],
+    [("no air", ((0.7, "Y2"),), "X5"), ("carriage jams", ((1.7, "Y0"),), "X3"), ("place blocked", (*PUT, (4.0, "")), "X7")],
 )
 def test_a_fault_holds_what_it_names_and_lets_go_of_it(fault, phases, switch):
     plant = Arm((1.0,))
