@@ -10,6 +10,36 @@ matplotlib.use("Agg")
 
 NOTEBOOKS = Path(__file__).resolve().parent.parent / "notebooks"
 ANSWERS = {
+    "02-scan-cycle": (
+        "horn",
+        "LD X0\nOUT M0\nLD M0\nOUT M1\nLD M1\nOUT Y0",
+        "Not yet: Y0 becomes 1 in scan 3 after X0",
+        "Right: the horn answers in the same scan",
+    ),
+    "03-devices-and-addressing": (
+        "recipe",
+        "LD SM1\nMOV 180 D100\nMOV 195 D101\nMOV 210 D102\nMOV 160 D103\nLD SM0\nMOV D0 Z0\nMOV D100Z0 D10",
+        "Not yet: recipe 1 is 195 degrees, D10 shows 180",
+        "Right: D10 shows the temperature of the recipe",
+    ),
+    "04-contacts-and-coils": (
+        "lamp",
+        "LD X0\nEU\nOUT M0\nLD M0\nANI Y0\nLDI M0\nAND Y0\nORB\nOUT Y0",
+        "Not yet: in press 1 the lamp should be on, after 2 scans it is not",
+        "Right: each press turns the lamp over, once",
+    ),
+    "05-timers": (
+        "stairs",
+        "LD X0\nTOF T0 50\nLD T0\nOUT Y0",
+        "Not yet: the light does not come on with the press",
+        "Right: on with the press, off five seconds after it",
+    ),
+    "06-counters": (
+        "packer",
+        "LD X0\nCTR C0 6\nLD C0\nTMON T0 5\nLD T0\nOUT Y0",
+        "Not yet: after 12 bottles the pusher has worked 1 times",
+        "Right: half a second after each sixth bottle",
+    ),
     "12-high-speed-counters": (
         "filler",
         "LD SM1\nSET Y10\nLD SM0\nHCNT C236 1000\nDHSCR 330 C236 Y10",
