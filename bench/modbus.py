@@ -52,9 +52,9 @@ class Watched(ecsim.Session):
 
     moments: list
 
-    def _scan(self):
+    def _scan(self, traced=False):
         self.moments.append(time.perf_counter())
-        super()._scan()
+        super()._scan(traced)
 
 
 def measure(clients, rate, seconds):
