@@ -1,5 +1,6 @@
 """The pytest plugin, in a pytest of its own."""
 
+import os
 import subprocess
 import sys
 
@@ -40,8 +41,9 @@ def run(tmp_path, root):
     def run(text):
         (tmp_path / "test_it.py").write_text(text)
         options = ["-q", "-p", "no:cacheprovider", "--strict-markers", "-p", "ecsim.pytest_plugin"]
+        alone = os.environ | {"PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}  # the installed entry point would load it a second time
         done = subprocess.run(
-            [sys.executable, "-m", "pytest", *options, str(tmp_path)], cwd=tmp_path, capture_output=True, text=True, timeout=120
+            [sys.executable, "-m", "pytest", *options, str(tmp_path)], cwd=tmp_path, env=alone, capture_output=True, text=True, timeout=120
         )
         return done.returncode, done.stdout
 
