@@ -183,7 +183,7 @@ class Panel(anywidget.AnyWidget):
         """Leave the session and close the view."""
         with contextlib.suppress(AttributeError):
             self._leave()
-        parts, self.parts = self.parts, {}
+        parts, self.parts = getattr(self, "parts", {}), {}  # it may not have been made to the end
         for part in parts.values():
             part.close()
         super().close()

@@ -1,5 +1,7 @@
 """The cell magic %%il: what a cell gives, what it does with a lab, and what is completed in it."""
 
+import gc
+
 import pytest
 from ecsim_widgets import Lab
 from IPython.core.error import UsageError
@@ -66,6 +68,14 @@ def test_errors_are_marked_in_the_cell_and_the_lab_goes_on(il):
     assert plain[2].startswith("          ^^ ")
     assert plain[3] == "   3  FOO"
     assert lab.plc.program.source == GOOD
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_wrong_program_makes_no_lab_and_leaves_nothing_behind(il):
+    with pytest.raises(EcsimError):
+        il("--lab test --run", "OUT X0")
+    gc.collect()
+    assert Lab.named("test") is None
 
 
 @pytest.mark.parametrize("line", ["--model EC99", "--lab test --model EC10", "--speed 3"])
