@@ -40,6 +40,18 @@ ANSWERS = {
         "Not yet: after 12 bottles the pusher has worked 1 times",
         "Right: half a second after each sixth bottle",
     ),
+    "07-data": (
+        "percent",
+        "LD SM0\nMUL D0 100 D2\nDDIV D2 20000 D4\nMOV D5 D10",
+        "Not yet: 100 kg are 5 percent, D10 shows -1",
+        "Right: D10 shows the percentage over the whole range",
+    ),
+    "08-flow-and-subroutines": (
+        "hot",
+        "LD SM0\nMOV 0 Z0\nMOV 0 D10\nLD SM0\nFOR 20\nLD> D100Z0 80\nINC D10\nLD SM0\nINC Z0\nNEXT",
+        "Not yet: above 80 are D100; D10 shows 3",
+        "Right: D10 counts them all, anew in each scan",
+    ),
     "12-high-speed-counters": (
         "filler",
         "LD SM1\nSET Y10\nLD SM0\nHCNT C236 1000\nDHSCR 330 C236 Y10",
