@@ -245,6 +245,8 @@ class View {
     el.append(this.root);
     this.build();
     this.root.addEventListener("keydown", (event) => this.shortcut(event));
+    // JupyterLab's own keys look at the focused node before they come to the root: what has the focus must say so itself.
+    this.root.addEventListener("focusin", (event) => (event.target.dataset.lmSuppressShortcuts = "true"));
     page.views.add(this);
   }
   build() {

@@ -149,7 +149,7 @@ class Plated(Part):
         """The same value in the other formats."""
         shapes = EQUALS if FORMATS["decimal"].suits(row.kind) else ("hex",)
         bits = row.bits(value)
-        return [[fmt, FORMATS[fmt].text(value if fmt == "decimal" else bits, row.kind.stored)] for fmt in shapes if fmt != row.fmt]
+        return [[fmt, FORMATS[fmt].text(value if fmt == "decimal" else bits, row.kind.stored)] for fmt in shapes]
 
 
 def _is_input(row: Row) -> bool:

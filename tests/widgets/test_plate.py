@@ -55,7 +55,7 @@ def test_what_is_typed_is_told_in_other_formats_before_it_is_written(part):
     part.receive("look", {"plate": "p", "device": "D12", "look": "hex"})
     assert (plate(part)["text"], plate(part)["equals"][0]) == ("16#0007", ["decimal", "7"])
     part.receive("typed", {"plate": "p", "text": "FA0"})
-    assert plate(part)["equals"] == [["decimal", "4000"], ["binary", "2#0000111110100000"], ["text", "'..'"]]
+    assert plate(part)["equals"] == [["decimal", "4000"], ["hex", "16#0FA0"], ["binary", "2#0000111110100000"], ["text", "'..'"]]
     assert part.rig.plc["D12"] == 7
     part.receive("write", {"plate": "p", "n": 1, "text": "FA0"})
     assert part.rig.plc["D12"] == 4000
