@@ -44,6 +44,7 @@ class Microscope(Part):
         self._seen: Trace | None = None
         self._drawn: tuple[tuple, Any, str] = ((), None, "")
         self._shown: tuple[tuple, dict[str, Any]] = ((), {})
+        self._watch()
         self._leave = rig.session.each_scan(self._watch)
 
     def close(self):

@@ -64,7 +64,6 @@ panels.trace = (place, layout, page) => {
   };
 
   // -- lanes: keys, and dragging a name to another place
-  roving(body, () => [...body.querySelectorAll(".lane")]);
   const laneOf = (node) => Number(node.closest(".lane")?.dataset.row ?? -1);
   function laneKey(event, lane) {
     if (event.key === "Delete" || event.key === "Backspace") say("remove", { lane });
@@ -103,8 +102,9 @@ panels.trace = (place, layout, page) => {
   });
   const stop = (event) => {
     event.preventDefault();
-    event.stopPropagation();
+    event.stopImmediatePropagation();
   };
+  roving(body, () => [...body.querySelectorAll(".lane")]); // up and down; left and right are the cursor's
 
   // -- mouse, pen and touch: a cursor or a name is dragged, the plane is pulled along, two fingers zoom, a click places a cursor
   const fingers = new Map();
