@@ -119,9 +119,12 @@ def measure(browser: str, seconds: float) -> dict[str, float]:
             octets = [0]
             sockets = page.context.new_cdp_session(page)
             sockets.send("Network.enable")
-            sockets.on(
-                "Network.webSocketFrameReceived", lambda event: octets.__setitem__(0, octets[0] + len(event["response"]["payloadData"]))
-            )
+
+            def heard(event: dict) -> None:
+                response = event["response"]  # a binary message comes as base64
+                octets[0] += len(response["payloadData"]) * (3 if response["opcode"] == 2 else 4) // 4
+
+            sockets.on("Network.webSocketFrameReceived", heard)
             page.goto(f"{address}/lab/tree/lab.ipynb?token={token}&reset")
             page.wait_for_function(CONNECTED, timeout=60_000)
             page.evaluate("() => window.jupyterapp.commands.execute('notebook:run-all-cells')")
@@ -166,7 +169,7 @@ def main() -> None:
     asked = parser.parse_args()
     figures = measure(asked.browser, asked.seconds)
     rows = [f"| {name} | {value:,.1f} | {WANTED.get(name, '')} |" for name, value in figures.items()]
-    about = f"`python bench/lab.py --write`: {DEVICES} devices, a ladder of {RUNGS} rungs, a chart of {STEPS} steps, all panels, 1920 px."
+    about = f"`python bench/lab.py --write`: {DEVICES} devices, a ladder of {RUNGS} rungs, a chart of {STEPS} steps, all panels, 1920 px, {os.cpu_count()} processors, load average {os.getloadavg()[0]:.1f} (others work on the machine too)."
     table = "\n".join([about, "", "| | measured | wanted |", "|---|---|---|", *rows])
     print(table)
     if asked.write:
