@@ -9,6 +9,13 @@ import pytest
 matplotlib.use("Agg")
 
 NOTEBOOKS = Path(__file__).resolve().parent.parent / "notebooks"
+
+
+def lines(instructions):
+    """A program from its instructions in one line."""
+    return instructions.replace("; ", "\n")
+
+
 ANSWERS = {
     "02-scan-cycle": (
         "horn",
@@ -51,6 +58,30 @@ ANSWERS = {
         "LD SM0\nMOV 0 Z0\nMOV 0 D10\nLD SM0\nFOR 20\nLD> D100Z0 80\nINC D10\nLD SM0\nINC Z0\nNEXT",
         "Not yet: above 80 are D100; D10 shows 3",
         "Right: D10 counts them all, anew in each scan",
+    ),
+    "09-sequence": (
+        "drill",
+        lines(
+            "LD SM1; SET S0; STL S0; LD X0; SET S20; STL S20; SET Y0; LD X1; SET S21; STL S21; OUT Y1; LD X2; SET S22; STL S22; OUT Y2; LD X3; RST Y0; OUT S0; RET"
+        ),
+        "Not yet: in turn 1 the clamp is open while Y1 is ON",
+        "Right: the clamp holds until the drill is up again",
+    ),
+    "10-selection": (
+        "sorter",
+        lines(
+            "LD SM1; SET S0; STL S0; LD X0; AND< D0 50; SET S20; LD X0; AND>= D0 50; AND< D0 100; SET S21; LD X0; AND>= D0 100; SET S22; STL S20; OUT Y0; LDI X0; OUT S0; STL S21; OUT Y1; LDI X0; OUT S0; STL S22; OUT Y2; LDI X0; OUT S0; RET"
+        ),
+        "Not yet: at 50 g nothing is ON, it should be Y1 alone",
+        "Right: one chute for every weight",
+    ),
+    "11-parallel": (
+        "pair",
+        lines(
+            "LD SM1; SET S0; STL S0; LD X0; SET S20; SET S30; STL S20; OUT Y0; LD X1; SET S21; STL S21; LD SM0; NOP; STL S30; OUT Y1; LD X2; SET S31; STL S31; LD SM0; NOP; STL S21; STL S31; LD SM0; SET S40; STL S40; OUT Y2; LDI X0; OUT S0; RET"
+        ),
+        "Not yet: the lamp is ON with X1 alone, X2 has not come",
+        "Right: the lamp waits for both, and nothing is left behind",
     ),
     "12-high-speed-counters": (
         "filler",
