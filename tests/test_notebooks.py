@@ -125,6 +125,15 @@ ANSWERS = {
         "Not yet: starts is not in registers 10 to 20",
         "Right: one request for all three",
     ),
+    "20-sfc-mistakes": (
+        "drive",
+        lines(
+            "LD SM1; SET S5; STL S5; OUT Y0; LD X1; SET S20; STL S20; TON T0 3; LD T0; SET S33; "
+            "STL S33; OUT Y1; LD X0; SET S34; STL S34; TON T1 3; LD T1; OUT S5; RET"
+        ),
+        "Not yet: Y0 and Y1 are ON together for 10 ms",
+        "Right: never together, and 0.3 s between them",
+    ),
 }
 
 
