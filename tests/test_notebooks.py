@@ -1,5 +1,6 @@
 """The lessons' own checks: what they say to the program that stands there, and to one that does what is asked."""
 
+import re
 from pathlib import Path
 
 import matplotlib
@@ -134,6 +135,22 @@ ANSWERS = {
         "Not yet: Y0 and Y1 are ON together for 10 ms",
         "Right: never together, and 0.3 s between them",
     ),
+    "21-analog-and-pid": (
+        "settings",
+        (400, 600),
+        "Not yet: it reaches 215 degrees",
+        "Right: warm in time, and never too hot",
+    ),
+    "22-testing-in-ci": (
+        "steps",
+        [
+            {"set": {"X0": 1, "X1": 1}, "scans": 1, "expect": {"Y0": 1}},
+            {"set": {"X0": 0}, "scans": 1, "expect": {"Y0": 1}},
+            {"set": {"X1": 0}, "scans": 1, "expect": {"Y0": 0}},
+        ],
+        "Not yet: nobody notices that the motor does not hold itself",
+        "Right: all three are found",
+    ),
 }
 
 
@@ -147,3 +164,15 @@ def test_a_lesson_tells_a_right_program_from_a_wrong_one(lesson):
         exec(cell, space)
     assert space["check"](space[name]).startswith(before)
     assert space["check"](right).startswith(after)
+
+
+def test_links_of_lessons_and_of_the_teachers_guide_lead_somewhere():
+    texts = {path: path.read_text(encoding="utf-8") for path in [NOTEBOOKS.parent / "docs" / "teaching.md", *NOTEBOOKS.glob("*.ipynb")]}
+    links = [(path, link) for path, text in texts.items() for link in re.findall(r"\]\(([^):#]+)\)", text)]
+    assert len(links) > 40
+    assert [(path.name, link) for path, link in links if not (path.parent / link).exists()] == []
+
+
+def test_the_teachers_guide_names_every_lesson():
+    guide = (NOTEBOOKS.parent / "docs" / "teaching.md").read_text(encoding="utf-8")
+    assert [path.name for path in NOTEBOOKS.glob("*.ipynb") if f"notebooks/{path.name}" not in guide] == []
