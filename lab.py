@@ -112,6 +112,7 @@ def make_environment():
     """Leave a .venv that holds what pyproject.toml and constraints.txt ask for; do nothing when it does already."""
     stamp = environment_stamp()
     if usable(PYTHON) and STAMP.is_file() and STAMP.read_text() == stamp:
+        place_extension()
         return
     started = time.monotonic()
     uv = shutil.which("uv")
@@ -120,8 +121,21 @@ def make_environment():
         create_venv(uv)
     STAMP.unlink(missing_ok=True)
     install(uv)
+    place_extension()
     STAMP.write_text(stamp)
     say(f"ecsim: the environment is ready after {time.monotonic() - started:.0f} s")
+
+
+def place_extension():
+    """Copy JupyterLab's extension into .venv, as it is now: an editable installation leaves out what is no package."""
+    import tomllib  # Python 3.11, which was asked for before
+
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    for folder, names in project["tool"]["setuptools"]["data-files"].items():
+        target = VENV / folder
+        target.mkdir(parents=True, exist_ok=True)
+        for name in names:
+            shutil.copyfile(ROOT / name, target / Path(name).name)
 
 
 def environment_stamp():

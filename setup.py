@@ -18,13 +18,4 @@ for package, folder in FOLDERS.items():
     below = find_namespace_packages(str(ROOT / folder), exclude=["*__pycache__*", "*.ipynb_checkpoints*"])
     packages += [package, *(f"{package}.{name}" for name in below)]
 
-# The extension that highlights instruction list in JupyterLab, with the tokens and colours that the panels have.
-EXTENSION = "share/jupyter/labextensions/ecsim"
-STATIC = ["widgets/labextension/remoteEntry.js", "widgets/labextension/highlight.css", "widgets/il.js", "ecsim/views/look/tokens.css"]
-
-setup(
-    packages=packages,
-    package_dir=FOLDERS,
-    package_data={"": NOT_CODE},
-    data_files=[(EXTENSION, ["widgets/labextension/package.json"]), (f"{EXTENSION}/static", STATIC)],
-)
+setup(packages=packages, package_dir=FOLDERS, package_data={"": NOT_CODE})

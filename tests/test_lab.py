@@ -14,12 +14,23 @@ import pytest
 posix = pytest.mark.skipif(os.name == "nt", reason="the stand-ins for browsers are shell scripts")
 
 
+EXTENSION = (
+    "widgets/labextension/package.json",
+    "widgets/labextension/remoteEntry.js",
+    "widgets/labextension/highlight.css",
+    "widgets/il.js",
+    "ecsim/views/look/tokens.css",
+)
+
+
 @pytest.fixture
 def copy(lab, tmp_path, monkeypatch):
     """The project's place, moved to a folder that holds only what the environment is installed from."""
-    for name in lab.INSTALLED_FROM:
-        shutil.copy(lab.ROOT / name, tmp_path)
+    for name in (*lab.INSTALLED_FROM, *EXTENSION):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(lab.ROOT / name, tmp_path / name)
     monkeypatch.setattr(lab, "ROOT", tmp_path)
+    monkeypatch.setattr(lab, "VENV", tmp_path / "venv")
     return tmp_path
 
 
@@ -44,6 +55,18 @@ def test_an_unchanged_project_is_not_installed_again(lab, copy, monkeypatch):
     (copy / "stamp").write_text(lab.environment_stamp())
     monkeypatch.setattr(lab, "install", lambda uv: pytest.fail("installed again"))
     lab.make_environment()
+
+
+def test_the_lab_s_extension_is_put_in_place_as_it_is_now(lab, copy, monkeypatch):
+    monkeypatch.setattr(lab, "PYTHON", Path(sys.executable))
+    monkeypatch.setattr(lab, "STAMP", copy / "stamp")
+    (copy / "stamp").write_text(lab.environment_stamp())
+    (copy / "widgets/il.js").write_text("// of today")
+    lab.make_environment()
+    placed = copy / "venv/share/jupyter/labextensions/ecsim"
+    assert (placed / "package.json").is_file()
+    assert sorted(file.name for file in (placed / "static").iterdir()) == sorted(Path(name).name for name in EXTENSION[1:])
+    assert (placed / "static/il.js").read_text() == "// of today"
 
 
 def test_an_installation_that_fails_is_tried_again_the_next_time(lab, copy, monkeypatch):
