@@ -27,6 +27,8 @@ STEPS = "S"  # the name that stands for all steps of the charts
 PIN = 0.01  # of the diagram's width: a shorter pulse gets a pin
 HEIGHT = 0.64  # of a signal in its row of a timing diagram
 ROOM = 0.018  # of the diagram's width, for each character of a value that is written into it
+UNITS = (("min", 60_000, 600_000), ("s", 1000, 10_000), ("ms", 1, 0))  # of a diagram's scale, its ms, and from what length on
+LINES, LABELS = 50, 13  # so many scans are marked, and named, in a diagram
 KEEP = 200_000  # changes; an hour of a signal that changes in every second scan of 10 ms
 
 
@@ -368,7 +370,14 @@ class Recording:
 
 def _frame(axes, span: tuple[float, float], names: list[str], colour) -> None:
     """What all timing diagrams have around their rows, the lowest of them first."""
-    axes.set(xlim=span, ylim=(-0.2, len(names)), xlabel="ms")
+    from matplotlib import ticker
+
+    unit, ms = next((unit, ms) for unit, ms, least in UNITS if span[1] - span[0] >= least)
+    axes.set(xlim=span, ylim=(-0.2, len(names)), xlabel=unit)
+    if ms > 1:
+        axes.set_xticks([ms * tick for tick in ticker.MaxNLocator(9).tick_values(span[0] / ms, span[1] / ms)])
+        axes.xaxis.set_major_formatter(ticker.FuncFormatter(lambda time, _: f"{time / ms:g}"))
+        axes.set_xlim(span)
     axes.set_yticks([row + HEIGHT / 2 for row in range(len(names))], names)
     axes.tick_params(length=0, colors=colour["--ec-text-2"])
     axes.xaxis.label.set_color(colour["--ec-text-2"])
@@ -475,13 +484,14 @@ class LogicAnalyser(Recording, Unit):
         self.wake(False)
 
     def plot(self, axes=None, ms: tuple[float, float] | None = None, cursors: tuple[float, float] | None = None):
-        """The timing diagram of a Recording; a line marks each scan, a triangle each run of interrupt programs."""
+        """The timing diagram of a Recording; a line marks each scan where there are few, a triangle each run of interrupt programs."""
         axes = super().plot(axes, ms, cursors)
         begin, end = axes.get_xlim()
         colour, top = tokens(), len(self.names)
         scans = [time / 1000 for time in self.scans if begin <= time / 1000 <= end]
-        axes.vlines(scans, -0.2, top, color=colour["--ec-dead"], linewidth=1.1, linestyle=(0, (4, 3)), zorder=0)
-        for time in scans:
+        if len(scans) <= LINES:  # more of them would hide the signals
+            axes.vlines(scans, -0.2, top, color=colour["--ec-dead"], linewidth=1.1, linestyle=(0, (4, 3)), zorder=0)
+        for time in scans if len(scans) <= LABELS else ():
             axes.annotate("scan", (time, top), (0, 3), textcoords="offset points", ha="center", fontsize=8, color=colour["--ec-text-2"])
         calls = [time / 1000 for time in self.interrupts if begin <= time / 1000 <= end]
         axes.plot(calls, [top - 0.08] * len(calls), "v", color=colour["--ec-fault"], markersize=5, clip_on=False)

@@ -441,3 +441,30 @@ def test_a_line_shows_who_spoke_when_and_what():
     assert {text.get_text() for text in plot_line(plc.ports[1].wire, ms=(0, 60)).texts} == {"01 …", "0A 0B …"}
     assert [label.get_text() for label in plot_line(plc.ports[1].wire, ms=(0, 5)).get_yticklabels()] == ["port 1"]
     pyplot.close("all")
+
+
+@pytest.mark.parametrize(("seconds", "unit", "last"), [(0.5, "ms", "500"), (12, "s", "12"), (900, "min", "14")])
+def test_the_scale_of_a_diagram_is_in_the_unit_that_fits(seconds, unit, last):
+    plc = Plc("EC20", scan_ms=100)
+    plc.load("LD SM12\nOUT Y0")
+    recording = Recording(plc, ["Y0"])
+    plc.run()
+    for _ in range(round(seconds * 10)):
+        plc.scan()
+        recording.sample()
+    axes = recording.plot()
+    axes.figure.canvas.draw()
+    shown = [tick.get_text() for tick in axes.get_xticklabels() if 0 <= tick.get_position()[0] <= seconds * 1000]
+    assert (axes.get_xlabel(), shown[-1]) == (unit, last)
+
+
+def test_many_scans_are_not_marked_in_a_diagram():
+    plc = Plc("EC20", scan_ms=10)
+    plc.load("LD SM13\nOUT Y0")
+    analyser = LogicAnalyser(plc, ["Y0"])
+    plc.run()
+    plc.scan(10)
+    marked = [line for line in analyser.plot().collections if len(line.get_paths()) == 10]
+    assert marked
+    plc.scan(100)
+    assert [line for line in analyser.plot().collections if len(line.get_paths()) > 50] == []
