@@ -1,5 +1,6 @@
 """Reading a program: questions about what it will do, answered before it is run. The simulator knows the answers, nobody wrote them down."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -17,16 +18,16 @@ from .signals import rises, value_at
 
 
 @dataclass(frozen=True)
-class Question:
+class Question(ABC):
     """One question about a run. `name` is what an answer is called by, `hint` where to look when it is wrong."""
 
     name: str
     words: str
     hint: str
 
+    @abstractmethod
     def answer(self, trace: Trace) -> Any:
         """What the program did."""
-        raise NotImplementedError
 
     def meets(self, given: Any, trace: Trace) -> bool:
         """Whether an answer is right."""
