@@ -10,8 +10,9 @@ from ecsim.assembler import assemble
 from ecsim.assembler.reader import HEADERS, RawUnit, Source, read
 from ecsim.devices import Bits, Device, number_text
 from ecsim.errors import ProgramError
-from ecsim.instructions import TABLE, Definition
+from ecsim.instructions import Definition
 from ecsim.instructions.signature import OperandSpec
+from ecsim.instructions.spelling import instructions_of
 from ecsim.models import Model
 
 MOST = 60  # completions that are offered at once
@@ -34,13 +35,6 @@ class Mark(NamedTuple):
     length: int
     words: str
     section: str
-
-
-def instructions_of(model: Model) -> dict[str, Definition]:
-    """What a model understands, by its own spelling."""
-    if model.spelling:
-        return {spelled: TABLE[mnemonic] for spelled, mnemonic in model.spelling.items()}
-    return {mnemonic: row for mnemonic, row in TABLE.items() if model.name in row.models}
 
 
 def marks(text: str, model: Model) -> list[Mark]:

@@ -8,7 +8,8 @@ from ..devices import Bits, Constant, Device, Name
 from ..errors import ProgramError
 from ..instructions import TABLE, Definition
 from ..instructions.signature import OperandSpec, parse_signature
-from ..models import Model, get_model
+from ..instructions.spelling import instructions_of, pulse_forms_of
+from ..models import By, Model, get_model
 from ..values import BOOL, TYPES
 from .inputs import check_inputs
 from .operands import Refused, Resolver
@@ -42,15 +43,10 @@ class _Assembler:
     def __init__(self, source: Source, model: Model):
         self.source, self.model = source, model
         self.parameters: dict[tuple[str, str, str], OperandSpec] = {}  # of CALL, by role, type and name
-        own = {spelled: TABLE[mnemonic] for spelled, mnemonic in model.spelling.items()}
-        own = own or {mnemonic: row for mnemonic, row in TABLE.items() if model.name in row.models}
-        rising = {
-            mnemonic + model.pulse_suffix: row
-            for mnemonic, row in own.items()
-            if model.pulse_suffix and row.form in ("value", "command") and not row.keeps
-        }
-        self.definitions = rising | own  # a name that belongs to an instruction stays with it
-        self.at_rise = rising.keys() - own.keys()
+        self.choices = {spelled: meant for spelled, meant in model.spelling.items() if isinstance(meant, By)}
+        rising = pulse_forms_of(model)
+        self.definitions = instructions_of(model) | rising
+        self.at_rise = rising.keys()
 
     def program(self) -> Program:
         variables = self._globals()
@@ -234,7 +230,7 @@ class _Assembler:
     # -- instructions -------------------------------------------------------------------------------------------
 
     def _instruction(self, statement: Statement, unit: Unit) -> Instruction | None:
-        definition = self.definitions.get(statement.mnemonic)
+        definition = self._definition(statement, unit)
         if definition is None:
             self._unknown(statement)
             return None
@@ -249,11 +245,23 @@ class _Assembler:
             definition.mnemonic, definition, operands, statement.operands, statement.line, statement.comment, spelled=spelled
         )
 
+    def _definition(self, statement: Statement, unit: Unit) -> Definition | None:
+        """The row that a statement's name stands for, with its first operand where that decides."""
+        choice = self.choices.get(statement.mnemonic)
+        if choice is not None and statement.operands:
+            try:
+                operand = self.resolver.resolve(statement.operands[0], unit.variables)
+            except Refused:
+                operand = None  # it is told when the operands are held against the usual row
+            if isinstance(operand, Device):
+                return TABLE[choice.key(operand.area, operand.number)]
+        return self.definitions.get(statement.mnemonic)
+
     def _unknown(self, statement: Statement) -> None:
         written = statement.mnemonic
         row = TABLE.get(written)
         if row is not None:
-            here = [spelled for spelled, mnemonic in self.model.spelling.items() if mnemonic == written]
+            here = self.model.spelled(written)
             hint = f"write {' or '.join(here)}" if here else f"{written} exists on {' and '.join(row.models)}"
             self.source.report(statement.line, f"{self.model.name} has no {written}", hint, row.section)
             return

@@ -19,6 +19,8 @@ from .signature import OperandSpec, parse_signature
 
 RESULT = ("zero", "carry", "borrow")
 BOTH = ("EC10", "EC20")
+FX = ("H1U", "H2U")
+H2U = ("H2U",)
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +48,7 @@ class Definition:
     faults: tuple[int, ...] = ()
     check: Callable | None = None  # (values of the constant operands) -> what is wrong with them, or None
     counted: str | None = None  # which of the model's limits a program's instructions of this kind count towards
+    pulsed: bool | None = None  # whether it has a form for the rise of its flow, where a family has such forms; None: as usual
     occupies: Callable | None = None  # (model, operands) -> the numbers of the inputs X0 to X7 that it needs for itself (8.5)
 
     def __repr__(self) -> str:
@@ -55,6 +58,11 @@ class Definition:
     def title(self) -> str:
         """The first sentence of the docstring."""
         return (self.function.__doc__ or "").strip().splitlines()[0]
+
+    @property
+    def pulses(self) -> bool:
+        """Whether it can be executed at the rise of its flow only: what works on values can, what watches its flow by itself cannot."""
+        return self.form in ("value", "command") and not self.keeps if self.pulsed is None else self.pulsed
 
     @property
     def keeps(self) -> bool:

@@ -2,7 +2,7 @@
 
 from ..errors import EcsimError
 from .ec import EC10, EC20
-from .model import Area, ModbusRange, Model
+from .model import Area, By, ModbusRange, Model
 
 MODELS = {model.name: model for model in (EC10, EC20)}
 
@@ -17,4 +17,4 @@ def get_model(name: "str | Model") -> Model:
     return model
 
 
-__all__ = ["MODELS", "Area", "ModbusRange", "Model", "get_model"]
+__all__ = ["MODELS", "Area", "By", "ModbusRange", "Model", "get_model"]

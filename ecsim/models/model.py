@@ -114,6 +114,22 @@ class SharedArea:
         return self.all_bits // self.stations
 
 
+class By:
+    """A name whose meaning depends on its first operand: (area, first number, last number, key of TABLE) and the usual key."""
+
+    def __init__(self, usual: str, *cases: tuple[str, int, int, str]):
+        self.usual, self.cases = usual, cases
+
+    def key(self, area: str, number: int) -> str:
+        """What the name stands for with this device."""
+        return next((key for name, first, last, key in self.cases if name == area and first <= number <= last), self.usual)
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """All that it can stand for, the usual one first."""
+        return (self.usual, *(key for *_, key in self.cases))
+
+
 @dataclass(frozen=True)
 class Model:
     """One PLC model. Meanings ("carry") are keys, devices are values, so that another family is another table."""
@@ -143,7 +159,7 @@ class Model:
     high_word_first: bool = True
     type_code: int = 0
     step_surcharge: tuple[str, int] | None = None  # contacts on this area from this number on are one step longer
-    spelling: dict[str, str] = field(default_factory=dict)  # the family's name of each of its instructions -> TABLE's; empty: TABLE's own
+    spelling: dict[str, str | By] = field(default_factory=dict)  # the family's name of each instruction -> TABLE's; empty: TABLE's own
     pulse_suffix: str = ""  # behind a mnemonic: executed only in the scan in which its flow rises
     fault_record: int = 5  # so many registers from "faults" on keep the codes of the last errors
     initial_registers: dict[int, int] = field(default_factory=dict)
@@ -166,6 +182,10 @@ class Model:
     shared: dict[int, SharedArea] = field(default_factory=dict)  # refresh mode of ECbus -> what is shared
     buffers: dict[str, tuple[str, int, int]] = field(default_factory=dict)  # meaning -> area, first and count of what the system uses
     baud_codes: dict[int, int] = field(default_factory=dict)  # baud rate -> what the mode word of a port says for it
+
+    def spelled(self, key: str) -> list[str]:
+        """The names that this model has for an instruction of TABLE."""
+        return [name for name, meant in self.spelling.items() if key in (meant.keys if isinstance(meant, By) else (meant,))]
 
     def timer_base_us(self, number: int) -> int:
         """The time unit of a timer in microseconds."""

@@ -1,0 +1,78 @@
+"""How H2U and H1U write their instructions: the name in a program -> TABLE's key, in the order of the function numbers.
+
+An instruction that means the same as one of EC is that row of TABLE under its own name; one that differs, or that EC
+does not have, has a row of its own, whose key begins with "FX:". The 32-bit forms stand beside the 16-bit ones.
+"""
+
+from .model import By
+
+_COMPARISONS = {
+    f"{join}{wide}{relation}" for join in ("LD", "AND", "OR") for wide in ("", "D") for relation in ("=", ">", "<", "<>", "<=", ">=")
+}
+
+H2U: dict[str, str | By] = {
+    # basic instructions
+    **{name: name for name in "LD LDI AND ANI OR ORI ANB ORB MPS MRD MPP INV NOP STL RET SET RST MC MCR".split()},
+    "OUT": By("OUT", ("T", 0, 245, "TON"), ("T", 246, 255, "TONR"), ("C", 0, 199, "CTU"), ("C", 200, 234, "DCNT"), ("C", 235, 255, "HCNT")),
+    # FNC 00 to 09: program flow
+    "CJ": "CJ",
+    "CALL": "CALL",
+    "EI": "EI",
+    "DI": "DI",
+    "WDT": "WDT",
+    "FOR": "FOR",
+    "NEXT": "NEXT",
+    # FNC 10 to 19: comparing and moving
+    "MOV": "MOV",
+    "DMOV": "DMOV",
+    "CML": "WINV",
+    "DCML": "DWINV",
+    "FMOV": "FMOV",
+    "DFMOV": "DFMOV",
+    "BCD": "BCD",
+    "DBCD": "DBCD",
+    "BIN": "BIN",
+    "DBIN": "DBIN",
+    # FNC 20 to 29: arithmetic and logic
+    "INC": "INC",
+    "DINC": "DINC",
+    "DEC": "DEC",
+    "DDEC": "DDEC",
+    "WAND": "WAND",
+    "DAND": "DWAND",
+    "DWAND": "DWAND",
+    "WOR": "WOR",
+    "DOR": "DWOR",
+    "DWOR": "DWOR",
+    "WXOR": "WXOR",
+    "DXOR": "DWXOR",
+    "DWXOR": "DWXOR",
+    # FNC 30 to 39: rotating and shifting
+    # FNC 40 to 49: data
+    "FLT": "FLT",
+    "DFLT": "DFLT",
+    # FNC 50 to 59: high-speed processing
+    # FNC 60 to 69: convenient instructions
+    # FNC 70 to 79: external devices
+    # FNC 80 to 88: serial devices
+    # FNC 110 to 132: floating point
+    # FNC 147: swapping bytes
+    # FNC 155 to 159: positioning
+    # FNC 160 to 169: clock
+    # FNC 170 and 171: Gray code
+    "GRY": "GRY",
+    "DGRY": "DGRY",
+    "GBIN": "GBIN",
+    "DGBIN": "DGBIN",
+    # FNC 224 to 246: compare contacts
+    **{name: name for name in sorted(_COMPARISONS)},
+}  # fmt: skip
+
+# What H1U lacks, by the 16-bit name where there is one.
+_H2U_ONLY = frozenset(
+    "SMOV CML FMOV XCH NEG ROR ROL RCR RCL WSFR WSFL SUM BON MEAN ANS ANR SQR FLT REFF HSZ SER TTMR STMR ROTC SORT TKY HKY SEGD ARWS ASC PR "
+    "ECMP EZCP EBCD EBIN EADD ESUB EMUL EDIV ESQR INT SIN COS TAN SWAP GRY GBIN".split()
+)
+H1U: dict[str, str | By] = {
+    name: key for name, key in H2U.items() if name not in _H2U_ONLY and (name[:1] != "D" or name[1:] not in _H2U_ONLY)
+}
