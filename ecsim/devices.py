@@ -54,6 +54,26 @@ class Constant:
 
 
 @dataclass(frozen=True, slots=True)
+class Pointer(Constant):
+    """A place in the program or a level of it by number: P10, N0, I101; `letter` says of what kind."""
+
+    letter: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class IndexedConstant:
+    """A constant and what an index register holds, added: K30V0."""
+
+    value: int
+    text: str
+    index: int
+    index_area: str
+
+    def __str__(self) -> str:
+        return self.text
+
+
+@dataclass(frozen=True, slots=True)
 class Name:
     """The name of a subroutine."""
 
@@ -73,7 +93,7 @@ class Text:
         return self.text
 
 
-Operand = Device | Bits | Constant | Name | Text
+Operand = Device | Bits | Constant | IndexedConstant | Name | Text
 
 
 class OperandError(ValueError):
@@ -111,6 +131,8 @@ def ec_constant(text: str) -> Constant | None:
         ) from None
 
 
+_POINTER = re.compile(r"([A-Z])(\d{1,4})")
+_INDEXED = re.compile(r"(.+)([A-Z])(\d{1,4})")
 _DEVICE = re.compile(r"(?:[kK](?P<digits>\d+))?(?P<area>[A-Za-z]+)(?P<number>\d+)(?:(?P<ia>[A-Za-z])(?P<index>\d+))?")
 
 
@@ -122,6 +144,8 @@ class Syntax:
     bit_areas: frozenset[str]
     index_areas: frozenset[str] = frozenset("Z")
     constant: Callable[[str], Constant | None] = ec_constant
+    pointers: dict[str, str] = field(default_factory=dict)  # kind of operand -> the letter of its pointers: LABEL -> P
+    indexed_constants: bool = False
     _known: dict[str, Operand] = field(default_factory=dict, compare=False, repr=False)
 
     def parse(self, text: str) -> Operand | None:
@@ -130,10 +154,21 @@ class Syntax:
         if operand is None:
             if len(text) > 64:
                 return None
-            operand = self.constant(text) or self._device(text)
+            operand = self.constant(text) or self._pointer(text) or self._device(text) or self._indexed_constant(text)
             if operand is not None and len(self._known) < 100_000:
                 self._known[text] = operand
         return operand
+
+    def _pointer(self, text: str) -> Pointer | None:
+        match = _POINTER.fullmatch(text.upper()) if self.pointers else None
+        return Pointer(int(match[2]), text, letter=match[1]) if match and match[1] in self.pointers.values() else None
+
+    def _indexed_constant(self, text: str) -> IndexedConstant | None:
+        match = _INDEXED.fullmatch(text.upper()) if self.indexed_constants else None
+        constant = self.constant(match[1]) if match and match[2] in self.index_areas else None
+        if constant is None or isinstance(constant.value, float):
+            return None
+        return IndexedConstant(constant.value, text, int(match[3]), match[2])
 
     def _device(self, text: str) -> Operand | None:
         match = _DEVICE.fullmatch(text)
