@@ -248,14 +248,20 @@ class _Assembler:
     def _definition(self, statement: Statement, unit: Unit) -> Definition | None:
         """The row that a statement's name stands for, with its first operand where that decides."""
         choice = self.choices.get(statement.mnemonic)
-        if choice is not None and statement.operands:
+        if choice is None:
+            return self.definitions.get(statement.mnemonic)
+        for word in statement.operands:
             try:
-                operand = self.resolver.resolve(statement.operands[0], unit.variables)
+                operand = self.resolver.resolve(word, unit.variables)
             except Refused:
                 operand = None  # it is told when the operands are held against the usual row
-            if isinstance(operand, Device):
-                return TABLE[choice.key(operand.area, operand.number)]
-        return self.definitions.get(statement.mnemonic)
+            if isinstance(operand, Device | Bits):
+                choice = choice.of(f"Kn{operand.area}" if isinstance(operand, Bits) else operand.area, operand.number)
+            else:
+                choice = choice.usual
+            if isinstance(choice, str):
+                return TABLE[choice]
+        return TABLE[choice.keys[0]]
 
     def _unknown(self, statement: Statement) -> None:
         written = statement.mnemonic
@@ -307,6 +313,8 @@ class _Assembler:
             if values is None:
                 pairs = zip(definition.operands, operands, strict=True)
                 values = {s.name: o.value for s, o in pairs if isinstance(o, Constant) and isinstance(o.value, int)}
+                pairs = zip(definition.operands, operands, strict=True)
+                values |= {s.name.lower(): o.number for s, o in pairs if isinstance(o, Device) and o.index is None}
             try:
                 self.resolver.span(spec, operand, spec.length(values), statement.operands[place - 1])
             except Refused as refused:

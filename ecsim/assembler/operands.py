@@ -109,14 +109,14 @@ class Resolver:
             self._digits(spec, operand, text)
             self._number(operand.area, operand.number, 4 * operand.digits, text)
             self._index(spec, operand, text)
-            if spec.written:
+            if spec.written and not spec.maybe:
                 self._writable(operand, 4 * operand.digits, text)
         else:
             self._area(spec, operand.area, text)
             self._number(
                 operand.area,
                 operand.number,
-                1 if self.model.areas[operand.area].kind in ("bit", "timer", "counter") else max(1, spec.type.words),
+                self._length(spec, operand.area),
                 text,
             )
             if operand.area == "C" and spec.type.words:
@@ -124,8 +124,20 @@ class Resolver:
             if spec.range and not spec.plain:
                 self._device_range(spec, operand, text)
             self._index(spec, operand, text)
-            if spec.written:
+            if spec.written and not spec.maybe:
                 self._writable(operand, max(1, spec.type.words), text)
+
+    def _length(self, spec: OperandSpec, area: str) -> int:
+        """How many elements of an area an operand's value takes."""
+        one = area in self.model.index_pairs or self.model.areas[area].kind in ("bit", "timer", "counter")
+        return 1 if one else max(1, spec.type.words)
+
+    def _areas(self, spec: OperandSpec) -> tuple[str, ...]:
+        """Where an operand may lie; a 32-bit number in index registers is named by the register of its low word."""
+        low = {high: low for low, high in self.model.index_pairs.items()}
+        if spec.type.words < 2 or not low:
+            return spec.order
+        return tuple(low.get(area, area) for area in spec.order if area not in low or not (spec.type is REAL or spec.span))
 
     def span(self, spec: OperandSpec, operand: Device | Bits, length: int | None, text: str) -> None:
         """Hold the elements from an operand on, if their number is known, against the last device."""
@@ -133,7 +145,7 @@ class Resolver:
             return
         room = self.model.areas[operand.area]
         if isinstance(operand, Bits):
-            length *= 4 * operand.digits
+            length = 4 * operand.digits * (1 if spec.first else length)
         elif room.kind == "word":
             length *= spec.type.words
         narrow = operand.area == "C" and spec.type.words == 1  # the counters behind the last one have 32 bits
@@ -143,7 +155,7 @@ class Resolver:
             raise Refused(f"{shown(text)} reaches beyond {name}", f"it is the first of {length} {operand.area} devices", "3.2")
 
     def _area(self, spec: OperandSpec, area: str, text: str) -> None:
-        if area not in spec.areas:
+        if area not in self._areas(spec):
             what = "is read only" if spec.written and area in ("KnX", "X") else f"cannot be {spec.name}"
             raise Refused(f"{shown(text)} {what}", f"{spec.name} ({spec.type.name}) may be {self._allowed(spec)}")
 
@@ -178,7 +190,7 @@ class Resolver:
     def _digits(self, spec: OperandSpec, bits: Bits, text: str) -> None:
         if spec.type.words == 1 and bits.digits > 4:
             raise Refused(f"{shown(text)} is too wide for {spec.name} ({spec.type.name})", "K1 to K4 for 16 bits")
-        if spec.type.words == 2 and bits.digits < 5:
+        if spec.type.words == 2 and bits.digits < self.model.least_wide_digits:
             raise Refused(f"{shown(text)} is too narrow for {spec.name} ({spec.type.name})", "K5 to K8 for 32 bits")
         if spec.whole and 4 * bits.digits != spec.type.bits:
             raise Refused(

@@ -63,8 +63,7 @@ class Access:
         if kind.words == 1 or area in ("T", "C"):
             text = f"{area}[{number}]"
             return text if kind.signed else f"({text} & {kind.high})"
-        high, low = self._pair(f"{area}[{number}]", f"{area}[{number + 1}]")
-        return self._wide(kind, high, low)
+        return self._wide(kind, *self.words(area, number))
 
     @staticmethod
     def constant(kind: DataType, constant: Constant) -> str:
@@ -79,6 +78,13 @@ class Access:
 
     def _pair(self, first: str, second: str) -> tuple[str, str]:
         return (first, second) if self.model.high_word_first else (second, first)
+
+    def words(self, area: str, number: int) -> tuple[str, str]:
+        """The source of the high and the low word of a 32-bit number."""
+        above = self.model.index_pairs.get(area)
+        if above is not None:
+            return f"{above}[{number}]", f"{area}[{number}]"
+        return self._pair(f"{area}[{number}]", f"{area}[{number + 1}]")
 
     def fetch(self, kind: DataType, operand: Operand, name: str) -> list[str]:
         """Statements that give `name` the value of an operand; for a REAL faster than `load`."""
@@ -121,7 +127,7 @@ class Access:
             return str(high), str(low)
         if not isinstance(operand, Device) or operand.index is not None or operand.area in ("T", "C"):
             return None
-        return self._pair(f"{operand.area}[{operand.number}]", f"{operand.area}[{operand.number + 1}]")
+        return self.words(operand.area, operand.number)
 
     def _load_bits(self, kind: DataType, bits: Bits) -> str:
         width = 4 * bits.digits
@@ -157,7 +163,7 @@ class Access:
             return [f"{self.bits(area)}[{number}] = {text}"]
         if kind.words == 1 or area in ("T", "C"):
             return [f"{area}[{number}] = {text}"]
-        high, low = self._pair(f"{area}[{number}]", f"{area}[{number + 1}]")
+        high, low = self.words(area, number)
         if kind is REAL:
             return [*([] if text == ROUNDED else [f"{ROUNDED} = {text}"]), f"{high} = {_HIGH}", f"{low} = {_LOW}"]
         name = text if text.isidentifier() else "wide"
@@ -188,7 +194,7 @@ class Access:
 
     def whole(self, operand: Device, name: str, text: str) -> list[str]:
         """The statement that gives a pair of registers, and `name`, the 16-bit integer `text` as a REAL."""
-        high, low = self._pair(f"{operand.area}[{operand.number}]", f"{operand.area}[{operand.number + 1}]")
+        high, low = self.words(operand.area, operand.number)
         return [f"{high}, {low}, {name} = SINGLES[{text}]"]
 
     @staticmethod

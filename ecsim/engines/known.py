@@ -20,7 +20,7 @@ class Known:
     @staticmethod
     def pair(kind: DataType, operand: Operand) -> bool:
         """Whether an operand is a plain pair of registers, the kind of thing that is known here."""
-        return kind.words == 2 and isinstance(operand, Device) and operand.index is None and operand.area not in ("T", "C")
+        return kind.words == 2 and isinstance(operand, Device) and operand.index is None and operand.area not in ("T", "C", "Z")
 
     def forget(self) -> None:
         """The statements that follow may be executed without those before."""

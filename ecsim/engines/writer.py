@@ -182,11 +182,9 @@ class Writer:
 
     def _count(self, instruction: Instruction, spec: OperandSpec) -> str:
         """The length of a span as an expression."""
-        loads = {
-            other.name: self.access.load(other.type, operand)
-            for other, operand in zip(instruction.definition.operands, instruction.operands, strict=True)
-            if other.span is None and other.plain
-        }
+        pairs = list(zip(instruction.definition.operands, instruction.operands, strict=True))
+        loads = {other.name: self.access.load(other.type, operand) for other, operand in pairs if other.span is None and other.plain}
+        loads |= {other.name.lower(): self.access.place(operand) for other, operand in pairs if isinstance(operand, (Device, Bits))}
 
         def known(match: re.Match) -> str:
             word = match[0]
@@ -299,11 +297,17 @@ class Writer:
             lines.append(f"{', '.join(names)}{',' if len(names) == 1 else ''} = {result}" if names else result)
             # What is read too can be reached; what is not goes first, so that an error leaves all destinations as they are.
             for name, (spec, operand) in sorted(zip(values, targets, strict=True), key=lambda stored: stored[1][0].read):
-                lines += self._store_result(instruction, spec, operand, name)
+                stored = self._store_result(instruction, spec, operand, name)
+                lines += self._where_given(name, operand, stored) if spec.maybe else stored
             lines += [f"{self._special(instruction, word, flow)} = f_{word}" for word in definition.given]
         if definition.after and "state" not in definition.given:
             lines.append(f"E[{instruction.slot}] = {flow}")
         return lines
+
+    def _where_given(self, name: str, operand, stored: list[str]) -> list[str]:
+        """The statements that store a result if there is one; in what only the system writes that is error 64."""
+        fixed = operand.area == "X" or (operand.index is None and operand.number in self.model.read_only(operand.area))
+        return [f"if {name} is not None:", *indented([f"raise Fault({OPERAND})"] if fixed else stored)]
 
     def _one_result(self, instruction: Instruction, spec: OperandSpec, operand, result: str, pattern: Template) -> list[str]:
         definition = instruction.definition
@@ -348,6 +352,8 @@ class Writer:
         self.known.spoil(operand, max(1, kind.words) if spec.span is None else None)
         if kind is BOOL or isinstance(operand, Bits):
             self.known.settled = False  # the bit of an execution error may be among them
+        if spec.first and isinstance(operand, Bits):
+            return self.access.store(kind, operand, f"{name}[0]")
         if spec.span is not None:
             if kind.words and kind is not REAL and not as_stored:
                 name = f"wrapped{kind.bits}({name})"
@@ -359,10 +365,15 @@ class Writer:
         lines = self._flags(instruction, kind, name)
         if not (as_stored or fits):
             half, full = 1 << kind.bits - 1, (1 << kind.bits) - 1
+            fitted = f"{name} = ({name} + {half} & {full}) - {half}"
+            if instruction.definition.restarts:
+                fitted = f"{name} -= {half} if {name} > 0 else {-half - 1}"
             if lines and lines[-1].startswith(INDENT):  # the flags have found the result to be too large already
-                lines.append(f"{INDENT}{name} = ({name} + {half} & {full}) - {half}")
+                lines.append(INDENT + fitted)
+                if instruction.definition.restarts:
+                    lines.append(INDENT + lines[0])  # zero: the stored number
             else:
-                lines.append(f"if not {-half} <= {name} <= {half - 1}: {name} = ({name} + {half} & {full}) - {half}")
+                lines.append(f"if not {-half} <= {name} <= {half - 1}: {fitted}")
         if Known.pair(kind, operand):
             self.known.keep(kind.stored, operand, name)
         return lines + self.access.store(kind, operand, name)

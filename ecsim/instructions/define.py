@@ -41,6 +41,7 @@ class Definition:
     cleared: bool = False  # its destination is cleared when its MC is OFF or its step has been left (5.2.1, 5.3.1)
     application: bool = False  # an instruction of chapter 6: executed correctly it clears SM20 and SM22
     as_stored: bool = False  # numbers go in and out as registers hold them: nothing to mask, nothing to wrap
+    restarts: bool = False  # beyond a limit the result goes on from 0 with the limit's sign, rather than from the other limit (FNC 20)
     resets: bool = False  # an OFF written to a T or C clears its value too (5.1.17)
     transition_steps: int | None = None  # its length where it leads to, or clears, a step (5.3.2 to 5.3.4)
     bus: bool = False  # stands on the left bus, without a flow before it

@@ -7,7 +7,9 @@ left. After the type may follow, in this order:
     +SD -T        areas added to or taken from the usual ones of the type (table 3-3)
     [D V]         just these areas
     *S2  *4       a span of as many elements as S2 says, or of 4; the function gets or gives a list
-    *{S2+1}       the same as an expression of operands and flags
+    *{S2+1}       the same as an expression of operands, flags and, in small letters, of the numbers of their devices
+    '             of such a span a Kn string takes the first element only
+    ?             it keeps what it holds where the function gives None for it; devices that only the system writes may stand here
     ^             a Kn string only in the full width of the type (K4, K8)
     ~  !          may be indexed, may not be indexed, where that differs from the usual
     =0..7         range of the value: a constant outside is refused, another value is error 64 when it is executed
@@ -83,6 +85,8 @@ class OperandSpec:
     range: tuple[int, int] | None = None
     order: tuple[str, ...] = ()
     whole: bool = False  # a Kn string must have the full width of the type
+    first: bool = False  # a Kn string takes the first element of the span only
+    maybe: bool = False  # written only where the function gives something
 
     @property
     def role(self) -> str:
@@ -110,7 +114,7 @@ class OperandSpec:
 
 _OPERAND = re.compile(
     r"(?P<out>>)?(?P<name>[A-Z]+[0-9]*):(?P<kind>[A-Z]+)(?P<changes>(?:[+-](?:Kn)?[A-Z]+|[+-]const)*)(?:\[(?P<areas>[A-Za-z ]+)\])?"
-    r"(?:\*(?P<span>[A-Z]*[0-9]+|[A-Z]|\{[^}]*\}))?(?P<whole>\^)?(?P<mark>[~!])?(?:=(?P<low>-?\d+)\.\.(?P<high>-?\d+))?"
+    r"(?:\*(?P<span>[A-Z]*[0-9]+|[A-Z]|\{[^}]*\}))?(?P<first>')?(?P<maybe>\?)?(?P<whole>\^)?(?P<mark>[~!])?(?:=(?P<low>-?\d+)\.\.(?P<high>-?\d+))?"
 )
 
 
@@ -171,6 +175,8 @@ def parse_signature(text: str) -> tuple[tuple[OperandSpec, ...], tuple[str, ...]
                 range=value_range,
                 order=areas,
                 whole=bool(match["whole"]),
+                first=bool(match["first"]),
+                maybe=bool(match["maybe"]),
             )
         )
         if specs[-1].read or specs[-1].unit:

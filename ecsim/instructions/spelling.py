@@ -8,7 +8,7 @@ def instructions_of(model: Model) -> dict[str, Definition]:
     """The name in a program -> its row, the usual one where the first operand decides; without the pulse forms."""
     if not model.spelling:
         return {mnemonic: row for mnemonic, row in TABLE.items() if model.name in row.models}
-    return {spelled: TABLE[meant.usual if isinstance(meant, By) else meant] for spelled, meant in model.spelling.items()}
+    return {spelled: TABLE[meant.keys[0] if isinstance(meant, By) else meant] for spelled, meant in model.spelling.items()}
 
 
 def pulse_forms_of(model: Model) -> dict[str, Definition]:

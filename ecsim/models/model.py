@@ -115,19 +115,23 @@ class SharedArea:
 
 
 class By:
-    """A name whose meaning depends on its first operand: (area, first number, last number, key of TABLE) and the usual key."""
+    """A name whose meaning depends on its first operand: (area, first number, last number, key of TABLE) and the usual key.
 
-    def __init__(self, usual: str, *cases: tuple[str, int, int, str]):
+    The area of a group of bits is KnM and so on. Instead of a key another By looks at the next operand.
+    """
+
+    def __init__(self, usual: "str | By", *cases: "tuple[str, int, int, str | By]"):
         self.usual, self.cases = usual, cases
 
-    def key(self, area: str, number: int) -> str:
+    def of(self, area: str, number: int) -> "str | By":
         """What the name stands for with this device."""
         return next((key for name, first, last, key in self.cases if name == area and first <= number <= last), self.usual)
 
     @property
     def keys(self) -> tuple[str, ...]:
         """All that it can stand for, the usual one first."""
-        return (self.usual, *(key for *_, key in self.cases))
+        meant = (self.usual, *(key for *_, key in self.cases))
+        return tuple(key for each in meant for key in (each.keys if isinstance(each, By) else (each,)))
 
 
 @dataclass(frozen=True)
@@ -155,6 +159,8 @@ class Model:
     special_bits: str = "SM"
     special_words: str = "SD"
     first_special: int = 0  # where special devices share an area with others, they are those from this number on
+    index_pairs: dict[str, str] = field(default_factory=dict)  # where the high word of a 32-bit number in an index register lies
+    least_wide_digits: int = 5  # of a Kn string that holds a 32-bit number
     local_areas: tuple[str, ...] = ("LM", "V")  # bits and words of the unit that is executed: put aside by a call and an interrupt
     high_word_first: bool = True
     type_code: int = 0
