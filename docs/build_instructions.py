@@ -87,8 +87,10 @@ def _index() -> str:
     lines += ["in a shell `ecsim help ADD`.", "", "| section | about | instructions |", "| --- | --- | --- |"]
     lines += [f"| [{section}]({section}.md) | {section_title(section)} | {' '.join(names)} |" for section, names in sections().items()]
     lines += ["", "## Devices", "", f"| area | kind | {' | '.join(MODELS)} |", "| --- | --- |" + " --- |" * len(MODELS)]
-    for name, area in next(iter(MODELS.values())).areas.items():
-        lines.append(f"| {name} | {area.kind} | {' | '.join(model.areas[name].span for model in MODELS.values())} |")
+    kinds = {area.name: area.kind for model in MODELS.values() for area in model.areas.values()}
+    for name, kind in kinds.items():
+        spans = [model.areas[name].span if name in model.areas else "" for model in MODELS.values()]
+        lines.append(f"| {name} | {kind} | {' | '.join(spans)} |")
     lines += [
         "",
         "KnX, KnY, KnM and so on are 4n bit devices taken as one number (K4M0); an operand with index may be followed by Z0 to Z15 (D0Z1).",

@@ -94,10 +94,10 @@ class Memory:
             raise EcsimError(f"{suffix!r} is no type; use {', '.join(TYPES)}")
         if kind not in self.types(device):
             raise EcsimError(f"{text} cannot be had as {kind.name}; it is {', '.join(each.name for each in self.types(device))}")
-        if device.number >= area.count:
+        if not area.has(device.number):
             raise EcsimError(f"{self.model.name} has no {text} ({area.span})")
         length = 4 * device.digits if isinstance(device, Bits) else kind.words if area.kind == "word" else 1
-        if device.number + length > area.count:
+        if device.number + length > area.end(device.number):
             raise EcsimError(f"{name} reaches beyond the last {device.area} of {self.model.name} ({area.span})")
         return device, kind
 

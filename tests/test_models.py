@@ -11,7 +11,7 @@ from ecsim.models import MODELS, get_model
 FACTS = json.loads((Path(__file__).parent / "facts" / "system.json").read_text(encoding="utf-8"))
 
 
-@pytest.fixture(params=sorted(MODELS))
+@pytest.fixture(params=sorted(name for name, model in MODELS.items() if model.family == "EC"))
 def model(request):
     """Each model in turn."""
     return get_model(request.param)

@@ -455,7 +455,7 @@ def test_the_public_compile_tells_all_errors():
 
 
 def test_an_unknown_model_is_told_with_the_known_ones():
-    with pytest.raises(EcsimError, match="there is no model 'EC30'; ecsim knows EC10 and EC20"):
+    with pytest.raises(EcsimError, match="there is no model 'EC30'; ecsim knows EC10, EC20, H1U, H2U"):
         Plc("EC30")
     assert Plc("ec10").model.name == "EC10"
 

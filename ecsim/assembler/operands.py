@@ -199,10 +199,10 @@ class Resolver:
 
     def _number(self, area: str, number: int, length: int, text: str) -> None:
         room = self.model.areas[area]
-        if number >= room.count:
+        if not room.has(number):
             raise Refused(f"{self.model.name} has no {area}{number_text(area, number)} ({room.span})", "", "3.1")
-        if number + length > room.count:
-            last = f"{area}{number_text(area, room.count - 1)}"
+        if number + length > room.end(number):
+            last = f"{area}{number_text(area, room.end(number) - 1)}"
             raise Refused(
                 f"{shown(text)} reaches beyond {last}, the last {area} of {self.model.name}", f"it takes {length} {area} devices", "3.2"
             )
@@ -218,7 +218,7 @@ class Resolver:
             )
 
     def _device_range(self, spec: OperandSpec, device: Device, text: str) -> None:
-        low, high = spec.range
+        low, high = self.model.operand_ranges.get(spec.kind, spec.range)
         if not low <= device.number <= high:
             raise Refused(f"{text} cannot be {spec.name}", f"{spec.name} goes from {device.area}{low} to {device.area}{high}", "")
 

@@ -2,9 +2,10 @@
 
 from ..errors import EcsimError
 from .ec import EC10, EC20
+from .fx import H1U, H2U
 from .model import Area, By, ModbusRange, Model
 
-MODELS = {model.name: model for model in (EC10, EC20)}
+MODELS = {model.name: model for model in (EC10, EC20, H1U, H2U)}
 
 
 def get_model(name: "str | Model") -> Model:
@@ -13,7 +14,7 @@ def get_model(name: "str | Model") -> Model:
         return name
     model = MODELS.get(str(name).upper())
     if model is None:
-        raise EcsimError(f"there is no model {name!r}; ecsim knows {' and '.join(MODELS)}")
+        raise EcsimError(f"there is no model {name!r}; ecsim knows {', '.join(MODELS)}")
     return model
 
 

@@ -12,11 +12,23 @@ class Area:
     name: str
     count: int
     kind: str
+    hole: range = range(0)  # numbers that do not exist, between the others and the special ones
 
     @property
     def span(self) -> str:
         """The range in words: "X0 to X377"."""
-        return f"{self.name}0 to {self.name}{number_text(self.name, self.count - 1)}"
+        runs = ((0, self.hole.start), (self.hole.stop, self.count)) if self.hole else ((0, self.count),)
+        return " and ".join(
+            f"{self.name}{number_text(self.name, first)} to {self.name}{number_text(self.name, end - 1)}" for first, end in runs
+        )
+
+    def end(self, number: int) -> int:
+        """The number behind the last device of the run that a device lies in."""
+        return self.hole.start if self.hole and number < self.hole.start else self.count
+
+    def has(self, number: int) -> bool:
+        """Whether there is a device with this number."""
+        return 0 <= number < self.count and number not in self.hole
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,6 +178,7 @@ class Model:
     type_code: int = 0
     step_surcharge: tuple[str, int] | None = None  # contacts on this area from this number on are one step longer
     spelling: dict[str, str | By] = field(default_factory=dict)  # the family's name of each instruction -> TABLE's; empty: TABLE's own
+    operand_ranges: dict[str, tuple[int, int]] = field(default_factory=dict)  # kind of operand -> its numbers, where they differ from the usual
     pulse_suffix: str = ""  # behind a mnemonic: executed only in the scan in which its flow rises
     fault_record: int = 5  # so many registers from "faults" on keep the codes of the last errors
     initial_registers: dict[int, int] = field(default_factory=dict)
