@@ -26,7 +26,7 @@ panels.chart = (place, layout, page, view) => {
   let chosen = null; // null follows the active step
 
   function draw(svg) {
-    drawing = new Drawing(main, svg);
+    drawing = new Drawing(main, svg).still();
     drawing.apply(state);
     boxes.clear();
     for (const [device, step] of Object.entries(layout.steps)) {

@@ -44,12 +44,12 @@ panels.devices = (place, layout, page, view) => {
     </div>
     <div class="devices" role="grid" aria-label="Devices" tabindex="0" data-testid="grid">
       <div class="heads" role="row"><span role="columnheader"><span class="visually-hidden">Forced</span></span>${FIELDS.map(
-        ([key, words]) => `<span role="columnheader" class="${key}"><button data-sort="${key}" data-testid="sort-${key}" tabindex="-1">${words}<i></i></button></span>`,
+        ([key, words]) => `<span role="columnheader" class="${key}"><button data-sort="${key}" data-testid="sort-${key}">${words}<i></i></button></span>`,
       ).join("")}<span role="columnheader" class="was">Before</span><span role="columnheader" class="bitcol">Bits</span><span role="columnheader">Format</span><span role="columnheader" class="what">Comment</span></div>
       <div class="rows scroll" data-testid="rows"><div class="tall" role="presentation"></div></div>
       <p class="nothing" hidden></p>
     </div>
-    <footer class="panel-foot"><span class="tally"></span><span class="gap"></span><span><kbd>F2</kbd> edit <kbd>Enter</kbd> write <kbd>Shift Enter</kbd> force <kbd>Del</kbd> release or remove</span></footer>`;
+    <footer class="panel-foot"><span class="tally"></span><span class="gap"></span><span><kbd>F2</kbd> edit <kbd>F</kbd> format <kbd>Enter</kbd> write <kbd>Shift Enter</kbd> force <kbd>Del</kbd> release or remove</span></footer>`;
   const find = (selector) => body.querySelector(selector);
   const [grid, rows, tall, adder, offers, finder] = [".devices", ".rows", ".tall", "[data-testid=add]", ".menu", "[data-testid=find]"].map(find);
   const plate = platesOf("devices", page, view, { closed: () => (here >= 0 ? mark() : null) });
@@ -233,9 +233,16 @@ panels.devices = (place, layout, page, view) => {
     if (event.key in steps) choose(here < 0 ? 0 : here + steps[event.key], true);
     else if (event.key === "F2" || event.key === "Enter") edit();
     else if (event.key === "Delete") removeHere();
+    else if (event.key === "f" || event.key === "F") slotHere()?.select.focus();
     else return;
     event.preventDefault();
     event.stopPropagation();
+  });
+  rows.addEventListener("keydown", (event) => {
+    if (event.key !== "Escape" && event.key !== "Enter") return; // from the format of a row back to the rows
+    event.preventDefault();
+    event.stopPropagation();
+    grid.focus();
   });
   grid.addEventListener("focus", () => here < 0 && shown[2] && choose(0));
 

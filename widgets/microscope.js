@@ -70,7 +70,7 @@ panels.microscope = (place, layout, page) => {
     apply(changes, now) {
       state = now;
       if (changes.svg !== undefined) {
-        drawing = changes.svg ? new Drawing(net, changes.svg) : undefined;
+        drawing = changes.svg ? new Drawing(net, changes.svg).still() : undefined;
         if (!drawing) net.innerHTML = "";
         drawing?.apply(state);
       } else drawing?.apply(changes);

@@ -75,6 +75,11 @@ class Drawing {
     }
     return node;
   }
+  // A drawing to look at: its symbols cannot be pressed.
+  still() {
+    for (const node of this.svg.querySelectorAll("[role=button]")) set(node, "role", "img");
+    return this;
+  }
   apply(changes) {
     for (const [entry, value] of Object.entries(changes)) {
       const cut = entry.lastIndexOf(":");
@@ -240,6 +245,8 @@ class View {
     this.root = document.createElement("div");
     this.root.className = "ec ec-root";
     this.root.tabIndex = -1;
+    set(this.root, "role", "group");
+    set(this.root, "aria-label", "PLC");
     this.root.dataset.lmSuppressShortcuts = "true"; // R, N and Space are ours while the focus is here
     this.root.dataset.testid = "ec";
     el.append(this.root);
@@ -253,13 +260,13 @@ class View {
     const { parts = [], panels: layouts = {} } = this.page.layout;
     for (const panel of Object.values(this.parts ?? {})) panel.close?.();
     this.parts = {};
-    this.root.innerHTML = parts.length > 1 ? '<div class="lab"><div class="lab-a"></div><div class="lab-b"></div></div>' : '<div class="alone"></div>';
-    const grid = this.root.firstElementChild;
+    const grid = document.createElement("div");
+    grid.className = parts.length > 1 ? "lab" : "alone";
+    this.root.replaceChildren(grid);
     for (const part of parts) {
       const place = document.createElement("div");
       place.className = `area area-${part}`;
-      if (part === "transport" || parts.length === 1) grid.prepend(place);
-      else grid.querySelector(["chart", "timers", "devices"].includes(part) ? ".lab-b" : ".lab-a").append(place);
+      grid.append(place);
       this.parts[part] = panels[part](place, layouts[part] ?? {}, this.page, this);
     }
     if (parts.length > 1) {
@@ -307,13 +314,27 @@ class View {
 }
 
 // The lab's columns follow its own width, not the window's: in a cell, beside a notebook, on a wall. The ladder is never
-// narrower than its program needs, else its coils would be out of sight.
+// narrower than its program needs, else its coils would be out of sight. The panels stand in the page as they are read, so
+// that Tab goes the same way; on a wide page each of the two columns is read for itself.
 const [CHART_PX, GAP_PX, UNIT_PX, SIDE_PX, LADDER_PX] = [344, 16, 776, 520, 476];
+const [ACROSS, ASIDE] = [".area-transport", ".area-chart, .area-timers, .area-devices"];
 function columns(grid, least = 0) {
   const ladder = Math.max(LADDER_PX, least + 2);
+  const areas = [...grid.children];
+  const [left, right] = ["lab-a", "lab-b"].map((name) => Object.assign(document.createElement("div"), { className: name }));
+  const move = (parent, area) => (grid.isConnected && parent.moveBefore ? parent.moveBefore(area, null) : parent.append(area)); // keeps focus and scroll
   const fit = () => {
     const width = grid.clientWidth;
-    grid.dataset.columns = width >= UNIT_PX + GAP_PX + SIDE_PX ? "wide" : width >= CHART_PX + GAP_PX + ladder ? "pair" : "one";
+    const now = width >= UNIT_PX + GAP_PX + SIDE_PX ? "wide" : width >= CHART_PX + GAP_PX + ladder ? "pair" : "one";
+    if (now === grid.dataset.columns) return;
+    grid.dataset.columns = now;
+    if (now === "wide") {
+      grid.append(left, right);
+      for (const area of areas) if (!area.matches(ACROSS)) move(area.matches(ASIDE) ? right : left, area);
+    } else {
+      for (const area of areas) move(grid, area);
+      for (const column of [left, right]) column.remove();
+    }
   };
   const sizes = new ResizeObserver(fit);
   sizes.observe(grid);

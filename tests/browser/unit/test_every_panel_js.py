@@ -1,0 +1,161 @@
+"""What holds for every panel: names, keys, focus, contrast in a host that is not Jupyter, states without colour, and the last state without a kernel."""
+
+import pytest
+from ecsim_exercises import conveyor
+from ecsim_widgets.lab import PARTS
+
+pytestmark = pytest.mark.browser
+
+CONTROL_ROLES = {
+    "button", "checkbox", "combobox", "link", "listbox", "menuitem", "option", "radio", "searchbox", "slider", "spinbutton",
+    "switch", "tab", "textbox", "treeitem",
+}  # fmt: skip
+
+
+@pytest.fixture
+def conveyor_lab(make_lab):
+    """The conveyor some seconds after its start: a step is active, something is forced, a timer has run."""
+    made = make_lab(
+        conveyor.SOLUTION,
+        plant=conveyor.Conveyor(),
+        picture=conveyor.PICTURE,
+        title=conveyor.TITLE,
+        controls={"X5": "push", "X6": "stop", "X7": "latch"},
+    )
+    made.session.set("X5", 1)
+    made.session.scan(5)
+    made.session.set("X5", 0)
+    made.session.scan(400)
+    made.plc.force("Y3", 1)
+    made.session.scan(2)
+    return made
+
+
+@pytest.fixture(params=PARTS)
+def shown(request, bench, conveyor_lab):
+    """Each panel alone."""
+    bench.key = request.param
+    bench.connect(conveyor_lab.panel(request.param))
+    return bench
+
+
+# -- names and roles: what the browser tells a screen reader
+
+
+def accessible(page):
+    """The nodes of the browser's accessibility tree as (role, name, focusable)."""
+    client = page.context.new_cdp_session(page)
+    try:
+        nodes = client.send("Accessibility.getFullAXTree")["nodes"]
+    finally:
+        client.detach()
+    for node in nodes:
+        if not node.get("ignored"):
+            focusable = any(each["name"] == "focusable" and each["value"]["value"] for each in node.get("properties", ()))
+            yield node["role"]["value"], node.get("name", {}).get("value", ""), focusable
+
+
+def test_every_control_has_a_name_and_a_role(shown):
+    nodes = [node for node in accessible(shown.page) if node[0] != "RootWebArea"]
+    controls = [(role, name) for role, name, focusable in nodes if focusable or role in CONTROL_ROLES]
+    assert [control for control in controls if not control[1].strip() or control[0] in ("generic", "none")] == []
+    assert len(controls) > 1 or shown.key == "machine"
+
+
+# -- the keyboard: Tab goes from stop to stop, arrows inside a group, and what has the focus shows it
+
+MARKED = """() => {
+  window.marks = new Map();
+  window.mark = (node) => node && node !== document.body ? marks.get(node) ?? (marks.set(node, marks.size), marks.get(node)) : null;
+  window.named = (node) => node.dataset.testid ?? node.getAttribute('aria-label') ?? node.outerHTML.slice(0, 90);
+}"""
+FOCUSED = """() => {
+  const node = document.activeElement;
+  if (node === document.body) return null;
+  const outlined = [node, ...(node.closest('.ec-root') ? [node.parentElement, node.parentElement?.parentElement] : [])].some((each) => {
+    const style = each && getComputedStyle(each);
+    return style && style.outlineStyle !== 'none' && parseFloat(style.outlineWidth) >= 2;
+  });
+  return { mark: mark(node), name: named(node), outlined, group: node.hasAttribute('data-row') };
+}"""
+CONTROLS = """() => [...document.querySelectorAll('.ec-root :is(button, input, select, textarea, [role=button], [role=switch], [role=slider], [role=treeitem], [role=radio])')]
+  .filter((node) => node.getClientRects().length && !node.disabled && getComputedStyle(node).visibility === 'visible')
+  .map((node) => [mark(node), named(node)])"""
+BY_ARROWS = """(start) => {
+  const focused = FOCUSED;
+  const found = [start];
+  for (const here of found)
+    for (const key of ['ArrowRight', 'ArrowDown', 'ArrowLeft', 'ArrowUp']) {
+      const node = [...marks].find(([, number]) => number === here.mark)[0];
+      node.focus();
+      node.dispatchEvent(new KeyboardEvent('keydown', { key, bubbles: true, cancelable: true }));
+      const there = focused();
+      if (there && !found.some((each) => each.mark === there.mark)) found.push(there);
+    }
+  return found;
+}""".replace("FOCUSED", FOCUSED)
+
+
+def stops_of_tab(page):
+    """What has the focus after each press of Tab, until it leaves the page."""
+    page.evaluate(MARKED)
+    stops = []
+    for _ in range(200):
+        page.keyboard.press("Tab")
+        focused = page.evaluate(FOCUSED)
+        if focused is None:
+            return stops
+        stops.append(focused)
+    raise AssertionError("the focus never leaves the panel")
+
+
+def test_every_control_is_reached_by_the_keyboard_and_shows_its_focus(shown):
+    page = shown.page
+    stops = stops_of_tab(page)
+    reached = {stop["mark"]: stop for stop in stops}
+    for stop in stops:
+        if stop["group"]:
+            reached |= {member["mark"]: member for member in page.evaluate(BY_ARROWS, stop)}
+    missed = [name for mark, name in page.evaluate(CONTROLS) if mark not in reached]
+    if shown.key == "devices":  # F goes to the format of the row
+        assert {name.removeprefix("Format of ") for name in missed} <= set(shown.panel.rig.plc.names)
+        shown["grid"].focus()
+        page.keyboard.press("End")
+        page.keyboard.press("f")
+        assert page.evaluate("() => document.activeElement.getAttribute('aria-label')") == "Format of D0"
+        page.keyboard.press("Escape")
+        assert page.evaluate("() => document.activeElement.dataset.testid") == "grid"
+    else:
+        assert missed == []
+    assert [stop["name"] for stop in reached.values() if not stop["outlined"]] == []
+
+
+def test_tab_goes_through_the_lab_as_it_is_read(bench, conveyor_lab):
+    """From top to bottom, and in a row of panels from left to right, however many columns there are."""
+    panels = """() => [...document.querySelectorAll('.ec-root :is(section.panel, .transport, .unit)')].filter((node) => node.querySelector('[tabindex="0"], button, input'))
+      .map((node) => [node.dataset.testid, Math.round(node.getBoundingClientRect().top), Math.round(node.getBoundingClientRect().left)])"""
+    for width in (760, 1280):
+        bench.page.set_viewport_size({"width": width, "height": 900})
+        bench.connect(conveyor_lab)
+        places = {name: (top, left) for name, top, left in bench.js(panels)}
+        bench.js(MARKED)
+        order = []
+        for _ in range(200):
+            bench.page.keyboard.press("Tab")
+            name = bench.js("() => document.activeElement.closest('section.panel, .transport, .unit')?.dataset.testid")
+            if name is None:
+                break
+            if name not in order[-1:]:
+                order.append(name)
+        assert order == sorted(places, key=places.get)
+
+
+def test_what_has_the_focus_keeps_it_when_the_columns_change(bench, conveyor_lab):
+    bench.connect(conveyor_lab)
+    bench["chart"].locator(".step").nth(1).focus()
+    bench["ladder"].locator(".ladder-scroll").evaluate("(body) => { body.scrollTop = 500 }")
+    for width, columns in ((1600, "wide"), (700, "one"), (1000, "pair")):
+        bench.page.set_viewport_size({"width": width, "height": 900})
+        bench.page.wait_for_function("(columns) => document.querySelector('.lab').dataset.columns === columns", arg=columns)
+        assert bench.js("() => document.activeElement.dataset.testid") == "step-S20"
+        assert bench["ladder"].locator(".ladder-scroll").evaluate("(body) => body.scrollTop") == 500
