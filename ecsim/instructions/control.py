@@ -40,15 +40,25 @@ class Loop(NamedTuple):
     output: float  # MV with its fraction
 
 
-def settings(block):
-    """What the registers from S3 on say; a setting outside its range is error 64."""
+def settings(block, limits):
+    """What the registers from S3 on say, the four limits from the place `limits` on; a setting outside its range is error 64."""
     period, mode, smoothing, gain, integral, kd, td, *_ = block
     legal = period >= 1 and 0 <= smoothing <= 99 and gain >= 1 and integral >= 0 and 0 <= kd <= 100 and td >= 0
     output_alarm, limited = mode >> 2 & 1 == 1, mode >> 5 & 1 == 1
     if output_alarm and limited:  # 6.11.1: both ON count as both OFF
         output_alarm = limited = False
     found = Settings(
-        period, mode & 1 == 1, mode >> 1 & 1 == 1, output_alarm, limited, smoothing, gain, 100 * integral, kd, 10 * td, *block[15:19]
+        period,
+        mode & 1 == 1,
+        mode >> 1 & 1 == 1,
+        output_alarm,
+        limited,
+        smoothing,
+        gain,
+        100 * integral,
+        kd,
+        10 * td,
+        *block[limits : limits + 4],
     )
     if found.input_alarm:
         legal = legal and min(found.most_rise, found.most_fall) >= 0
@@ -97,20 +107,25 @@ def pid(setpoint, measured, block, output, place, now, state):
 
     One sample in each sample time. S3+7 counts the samples; when it is cleared the loop begins anew, from what D holds.
     """
+    return controlled(setpoint, measured, block, output, place, now, state, 15)
+
+
+def controlled(setpoint, measured, block, output, place, now, state, limits):
+    """The block, the output and the loops after a scan; four limits and the word of alarms stand from the place `limits` on."""
     loops = state or {}
     loop = loops.get(place)
     if loop is None or loop.samples != block[7]:
         loop = Loop(0, now, measured, measured, 0, 0, output)
     if now < loop.due_us:
         return block, output, state
-    given = settings(block)
+    given = settings(block, limits)
     if rounded(loop.output) != output:  # D was written by others: the loop goes on from there
         loop = loop._replace(output=output)
     after, climb = sampled(given, setpoint, measured, loop)
     due_us = loop.due_us + 1000 * given.period_ms
     after = after._replace(due_us=due_us if due_us > now else now + 1000 * given.period_ms)
-    alarm = alarms(given, after.filtered - loop.filtered, climb) if given.input_alarm or given.output_alarm else block[19]
-    block = [*block[:7], after.samples, *block[8:19], alarm]
+    alarm = alarms(given, after.filtered - loop.filtered, climb) if given.input_alarm or given.output_alarm else block[limits + 4]
+    block = [*block[:7], after.samples, *block[8 : limits + 4], alarm]
     return block, rounded(after.output), {**loops, place: after}
 
 

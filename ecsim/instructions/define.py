@@ -39,7 +39,7 @@ class Definition:
     given: tuple[str, ...] = ()  # flags and state that the function returns itself, after its values
     models: tuple[str, ...] = BOTH
     cleared: bool = False  # its destination is cleared when its MC is OFF or its step has been left (5.2.1, 5.3.1)
-    application: bool = False  # an instruction of chapter 6: executed correctly it clears SM20 and SM22
+    application: bool = False  # of chapter 6, or with a function number: executed correctly it clears SM20 and SM22, or M8067
     as_stored: bool = False  # numbers go in and out as registers hold them: nothing to mask, nothing to wrap
     restarts: bool = False  # beyond a limit the result goes on from 0 with the limit's sign, rather than from the other limit (FNC 20)
     resets: bool = False  # an OFF written to a T or C clears its value too (5.1.17)
@@ -102,7 +102,7 @@ TABLE: dict[str, Definition] = {}
 def _define(form: str, mnemonic: str, signature: str, steps: int | None, section: str, **columns) -> Callable[[Callable], Callable]:
     operands, taken, given = parse_signature(signature)
     columns["flags"] = tuple(dict.fromkeys((*columns.get("flags", ()), *(word for word in given if word != "state"))))
-    columns.setdefault("application", section.startswith("6."))
+    columns.setdefault("application", section.startswith(("6.", "FNC ")))
 
     def decorate(function: Callable) -> Callable:
         if mnemonic in TABLE:

@@ -52,9 +52,39 @@ H2U: dict[str, str | By] = {
     "FLT": "FLT",
     "DFLT": "DFLT",
     # FNC 50 to 59: high-speed processing
+    "MTR": "FX:MTR",
     # FNC 60 to 69: convenient instructions
+    "IST": "FX:IST",
+    "SER": "FX:SER",
+    "DSER": "FX:DSER",
+    "ABSD": "FX:ABSD",
+    "DABSD": "FX:DABSD",
+    "INCD": "FX:INCD",
+    "TTMR": "FX:TTMR",
+    "STMR": "FX:STMR",
+    "ALT": "FX:ALT",
+    "RAMP": "FX:RAMP",
+    "ROTC": "FX:ROTC",
+    "SORT": "FX:SORT",
     # FNC 70 to 79: external devices
+    "TKY": "FX:TKY",
+    "DTKY": "FX:DTKY",
+    "HKY": "FX:HKY",
+    "DHKY": "FX:DHKY",
+    "DSW": "FX:DSW",
+    "SEGD": "FX:SEGD",
+    "SEGL": "FX:SEGL",
+    "ARWS": "FX:ARWS",
+    "ASC": "ASC",
+    "PR": "FX:PR",
+    "FROM": "FX:FROM",
+    "DFROM": "FX:DFROM",
+    "TO": "FX:TO",
+    "DTO": "FX:DTO",
     # FNC 80 to 88: serial devices
+    "VRRD": "FX:VRRD",
+    "VRSC": "FX:VRSC",
+    "PID": "FX:PID",
     # FNC 110 to 132: floating point
     # FNC 147: swapping bytes
     # FNC 155 to 159: positioning
