@@ -5,14 +5,12 @@ at the reject cylinder four, and leave on a belt six places on. Lengths are part
 for a cylinder. A cylinder goes out while its valve has current and returns by a spring without.
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from math import inf
-from operator import attrgetter
 from random import Random
 from typing import ClassVar, NamedTuple
 
-from ..plant import Faulty, Point
+from ..plant import DIGITS, Machine, Point
 
 CAPPING, LABELLING, REJECTING, EXIT = 2, 3, 4, 6  # places behind the entry
 LINE = 10  # places that are followed: those of the table, and behind the exit those on its belt
@@ -21,17 +19,9 @@ ALIGNED = 0.1  # so far from the middle the eyes see a bottle, and cylinders mee
 REACH = 0.1  # of a cylinder's travel: from here on it is in the table's way
 PRESSED = 0.9  # and from here on the cap or the label is on
 TABLE_MARKS = (-ALIGNED, FLAG[0], FLAG[1], ALIGNED, 0.5)  # where something changes as the table turns
-INSTANT = 1e-9
 
 KINDS = ("good", "bad cap", "bad label", "gap")  # what the belt brings, by what will become of it; a gap is no bottle
 SHARES = (0.7, 0.8, 0.9)  # of the stream: 70 % good, 10 % of each other kind
-
-
-class Incident(NamedTuple):
-    """Something that must not happen to a machine, as a fact: when, and what."""
-
-    seconds: float
-    what: str
 
 
 class Bottle(NamedTuple):
@@ -49,12 +39,11 @@ class Bottle(NamedTuple):
 
 
 @dataclass
-class BottleMachine(Faulty):
+class BottleMachine(Machine):
     """The machine. The belt brings the kinds in `first`, then a random stream of `seed`; a gap counts as one.
 
     `table_s` is how long the table takes from one station to the next, `stroke_s` how long capper, labeller and reject
-    cylinder travel out, and as long back. A step of any length gives the same story: between two changes everything moves at
-    a constant speed. All fields hold values that a step replaces and never alters.
+    cylinder travel out, and as long back.
     """
 
     wiring: ClassVar[dict[str, Point]] = {
@@ -73,6 +62,8 @@ class BottleMachine(Faulty):
         "Y2": Point("Labeller", "the labeller goes out"),
         "Y3": Point("Reject", "the reject cylinder goes out"),
     }
+    DRIVES: ClassVar[tuple[str, ...]] = ("Y0", "Y1", "Y2", "Y3")
+    EXACT: ClassVar[tuple[str, ...]] = ("table", "strokes")
 
     FAULTS: ClassVar[dict[str, str]] = {
         "table jams": "the table does not turn",
@@ -88,8 +79,6 @@ class BottleMachine(Faulty):
     table_s: float = 1.0
     stroke_s: tuple[float, ...] = (0.6, 0.5, 0.4)
 
-    faults: frozenset[str] = field(default=frozenset(), init=False)
-    seconds: float = field(default=0.0, init=False)
     turned: int = field(default=0, init=False)  # stations that the table has passed
     table: float = field(default=0.0, init=False)  # how far it is past the middle of a station, -0.5 to 0.5 of a place
     strokes: tuple[float, ...] = field(default=(0.0,) * 3, init=False)  # of capper, labeller, reject cylinder: 0 home, 1 out
@@ -100,17 +89,12 @@ class BottleMachine(Faulty):
     unlabelled: int = field(default=0, init=False)  # bottles with a straight cap that left the labeller without its stroke
     escaped: int = field(default=0, init=False)  # faulty bottles that got past the reject cylinder
     lost: int = field(default=0, init=False)  # sound bottles that were rejected
-    incidents: tuple[Incident, ...] = field(default=(), init=False)
     straight: bool = field(default=False, init=False)  # a bottle with a straight cap stands at the labeller
     sound: bool = field(default=False, init=False)  # a sound bottle stands at the reject cylinder
     faulty: bool = field(default=False, init=False)  # a faulty one does
 
-    _outputs: tuple[int, ...] = field(default=(0,) * 4, init=False, repr=False)
     _rates: tuple[float, ...] = field(default=(0.0,) * 4, init=False, repr=False)  # of the table and the cylinders, a second
     _ready: tuple[bool, ...] = field(default=(True,) * 3, init=False, repr=False)  # cylinders that have not done their work in this stroke
-    _amiss: frozenset[str] = field(default=frozenset(), init=False, repr=False)  # the incidents that last
-    _steady_s: float = field(default=0.0, init=False, repr=False)
-    _sensors: dict[str, int] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self):
         unknown = [kind for kind in self.first if kind not in KINDS]
@@ -119,7 +103,7 @@ class BottleMachine(Faulty):
         if len(self.stroke_s) != 3 or min(*self.stroke_s, self.table_s) <= 0:
             raise ValueError(f"table_s, stroke_s: one time and three above 0 s are needed, not {self.table_s} and {self.stroke_s}")
         self.line = (self._arrival(1), *(None,) * (LINE - 1))
-        self._settle()
+        super().__post_init__()
 
     @property
     def at_flag(self) -> bool:
@@ -133,45 +117,19 @@ class BottleMachine(Faulty):
         drawn = Random(f"{self.seed} {number}").random()
         return KINDS[sum(drawn >= share for share in SHARES)]
 
-    def step(self, seconds: float, outputs: Mapping[str, int]) -> dict[str, int]:
-        """Let `seconds` pass under the outputs Y0 to Y3 and return what the switches X0 to X12 say."""
-        now = (outputs["Y0"], outputs["Y1"], outputs["Y2"], outputs["Y3"])
-        if now != self._outputs:
-            self._outputs = now
-            self._settle()
-        while seconds > self._steady_s - INSTANT:
-            self._move(self._steady_s)
-            seconds = max(0.0, seconds - self._steady_s)
-            self._settle()
-        self._move(seconds)
-        self._steady_s -= seconds
-        return self._sensors
-
-    def state(self) -> tuple:
-        """Everything the machine is, as a value; `restore` takes it back."""
-        return whole(self)
-
-    def restore(self, state: tuple) -> None:
-        """Make the machine what it was when `state` was taken."""
-        vars(self).update(zip(FIELDS, state, strict=True))
-
     def _arrival(self, number):
         kind = self.kind(number)
         return None if kind == "gap" else Bottle(number, kind)
 
     def _move(self, seconds):
         """Let everything go on as it goes."""
-        self.seconds += seconds
         table, *rates = self._rates
         if table:
             self.table += table * seconds
         if any(rates):
             self.strokes = tuple([place + rate * seconds for place, rate in zip(self.strokes, rates, strict=True)])
 
-    def _settle(self):
-        """Take note of what has just changed: how everything moves from here on, for how long, and what is amiss."""
-        self.table = round(self.table, 9)
-        self.strokes = tuple([round(place, 9) for place in self.strokes])
+    def _plan(self):
         if self.table >= 0.5:
             self._pass_on()
         self._work()
@@ -198,10 +156,10 @@ class BottleMachine(Faulty):
             turns = 0.0
         if turns:
             times.append(self.table_s * min(mark - self.table for mark in TABLE_MARKS if mark > self.table))
-        self._rates, self._steady_s = (turns, *rates), min(times)
-        self.incidents += tuple(Incident(round(self.seconds, 3), what) for what in sorted(amiss - self._amiss))
-        self._amiss = frozenset(amiss)
+        self._rates = turns, *rates
+        self._report(amiss)
         self._look(aligned)
+        return min(times)
 
     def _pass_on(self):
         """The table is halfway to the next station: every place is another one's now."""
@@ -211,7 +169,7 @@ class BottleMachine(Faulty):
         self.escaped += judged is not None and not judged.sound
         self.passed += self.line[EXIT - 1] is not None
         self.turned += 1
-        self.table = round(self.table - 1, 9)
+        self.table = round(self.table - 1, DIGITS)
         self.line = (self._arrival(self.turned + 1), *self.line[:-1])
 
     def _work(self):
@@ -244,7 +202,7 @@ class BottleMachine(Faulty):
         self.sound = judged is not None and judged.sound
         self.faulty = judged is not None and not judged.sound
         capper, labeller, reject = zip(self.strokes, self._rates[1:], strict=True)
-        self._sensors = {
+        self.inputs = {
             "X0": int(self.at_flag),
             "X1": int(aligned and capping is not None),
             "X2": int(aligned and capping is not None and capping.cap == "good"),
@@ -261,5 +219,3 @@ class BottleMachine(Faulty):
 OUT, HOME = (1.0, 0.0), (0.0, 0.0)  # place and rate of a cylinder that rests at an end
 NAMES = ("capper", "labeller", "reject cylinder")
 JAMS = dict(zip(NAMES, ("capper jams", "labeller jams", "reject jams"), strict=True))
-FIELDS = tuple(part.name for part in fields(BottleMachine))
-whole = attrgetter(*FIELDS)

@@ -5,11 +5,11 @@ foot come through the lane one after the other; some turn back half-way.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
-from operator import attrgetter
+from dataclasses import dataclass, field
+from math import inf
 from typing import ClassVar, NamedTuple
 
-from ..plant import Faulty, Point
+from ..plant import DIGITS, Machine, Point
 
 PLACES = 4
 GAP = 0.4  # between the barriers
@@ -17,14 +17,6 @@ LENGTHS = {"car": 4.5, "bus": 12.0, "walker": 0.3}
 SPEEDS = {"car": 2.0, "bus": 1.5, "walker": 1.25}  # m/s
 APPROACH = 5.0  # so far from the barriers a visit begins and ends
 TURN_S = 1.0  # standing still, before it goes back
-INSTANT = 1e-9
-
-
-class Incident(NamedTuple):
-    """Something that must not happen to a machine, as a fact: when, and what."""
-
-    seconds: float
-    what: str
 
 
 class Visit(NamedTuple):
@@ -43,10 +35,10 @@ class Visit(NamedTuple):
 
 
 @dataclass
-class CarPark(Faulty):
+class CarPark(Machine):
     """The machine. `visits` come one after the other; `inside` is how many vehicles stand in it at first.
 
-    A step of any length gives the same run: between two turns everything moves at a constant speed.
+    Between two turns everything moves at a constant speed.
     """
 
     wiring: ClassVar[dict[str, Point]] = {
@@ -57,6 +49,8 @@ class CarPark(Faulty):
         "Y1": Point("Warn", "lamp at the street: something comes out"),
         "D0": Point("Cars", "how many vehicles are inside, for the display"),
     }
+    DRIVES: ClassVar[tuple[str, ...]] = ("Y0", "Y1")
+    EXACT: ClassVar[tuple[str, ...]] = ("_leg_s",)
     FAULTS: ClassVar[dict[str, str]] = {
         "outer knocked": "the outer barrier looks over cars and people and sees buses only",
         "inner knocked": "the inner barrier looks over cars and people and sees buses only",
@@ -65,20 +59,15 @@ class CarPark(Faulty):
     visits: tuple[Visit, ...] = (Visit(),)
     inside: int = 0
 
-    faults: frozenset[str] = field(default=frozenset(), init=False)
-    seconds: float = field(default=0.0, init=False)
     who: str = field(default="", init=False)  # in the lane now
     place: float = field(default=0.0, init=False)  # of its end towards the park
     entered: int = field(default=0, init=False)  # vehicles
     left: int = field(default=0, init=False)
     turned_away: int = field(default=0, init=False)  # by the sign
     done: int = field(default=0, init=False)  # visits that are over
-    incidents: tuple[Incident, ...] = field(default=(), init=False)
 
-    _full: int = field(default=0, init=False, repr=False)  # what the sign says
     _legs: tuple[tuple[float, float, str], ...] = field(default=(), init=False, repr=False)  # seconds, m/s, what comes then
     _leg_s: float = field(default=0.0, init=False, repr=False)  # what is left of the first one
-    _sensors: dict[str, int] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self):
         for visit in self.visits:
@@ -89,7 +78,7 @@ class CarPark(Faulty):
         if self.inside < 0:
             raise ValueError(f"inside: 0 or more vehicles are needed, not {self.inside}")
         self._await()
-        self._settle()
+        super().__post_init__()
 
     @property
     def visit(self) -> Visit | None:
@@ -97,44 +86,33 @@ class CarPark(Faulty):
         return self.visits[self.done] if self.done < len(self.visits) else None
 
     def step(self, seconds: float, outputs: Mapping[str, int]) -> dict[str, int]:
-        """Let `seconds` pass under the sign Y0; returns the light barriers X0 and X1.
-
-        Zero is in the attendant's hand; the lamp Y1 and the display change nothing in the lane.
-        """
-        self._full = outputs["Y0"]
-        while self._legs and seconds > self._leg_s - INSTANT:
-            self._move(self._leg_s)
-            seconds = max(0.0, seconds - self._leg_s)
-            self._next()
-        self._move(seconds)
-        self._leg_s -= seconds
+        """Let `seconds` pass under the sign Y0; returns the light barriers X0 and X1."""
+        super().step(seconds, outputs)
         if self.who:
-            self._settle()
-        return self._sensors
-
-    def state(self) -> tuple:
-        """Everything the machine is, as a value; `restore` takes it back."""
-        return whole(self)
-
-    def restore(self, state: tuple) -> None:
-        """Make the machine what it was when `state` was taken."""
-        vars(self).update(zip(FIELDS, state, strict=True))
+            self._look()
+        return self.inputs
 
     def _move(self, seconds):
-        self.seconds += seconds
         if self._legs:
             self.place += self._legs[0][1] * seconds
+            self._leg_s -= seconds
 
-    def _settle(self):
+    def _plan(self):
+        if self._legs and self._leg_s <= 0:
+            self._next()
+        self._look()
+        return self._leg_s if self._legs else inf
+
+    def _look(self):
         """What the light barriers see."""
         outer = inner = 0
         if self.who:
-            front = round(self.place, 9)
-            rear = round(self.place - LENGTHS[self.who], 9)
+            front = round(self.place, DIGITS)
+            rear = round(self.place - LENGTHS[self.who], DIGITS)
             tall = self.who == "bus"
             outer = int(rear < 0 < front and (tall or "outer knocked" not in self.faults))
             inner = int(rear < GAP < front and (tall or "inner knocked" not in self.faults))
-        self._sensors = {"X0": outer, "X1": inner}
+        self.inputs = {"X0": outer, "X1": inner}
 
     def _await(self):
         """Wait for the next visit."""
@@ -152,7 +130,6 @@ class CarPark(Faulty):
             self._count(visit)
         elif what == "gone":
             self.who, self.done = "", self.done + 1
-            self._settle()
             self._await()
         if self._legs:
             self._leg_s = self._legs[0][0]
@@ -161,7 +138,7 @@ class CarPark(Faulty):
         """Somebody appears: plan the way through the lane."""
         if visit.comes == "park" and visit.who != "walker" and not self.inside:
             return self._skip()
-        if visit.comes == "street" and visit.who != "walker" and visit.obeys and self._full:
+        if visit.comes == "street" and visit.who != "walker" and visit.obeys and self._outputs[0]:
             self.turned_away += 1
             return self._skip()
         length, speed = LENGTHS[visit.who], SPEEDS[visit.who]
@@ -188,10 +165,6 @@ class CarPark(Faulty):
         if visit.goes == "park":
             self.entered, self.inside = self.entered + 1, self.inside + 1
             if self.inside > PLACES and visit.obeys:
-                self.incidents += (Incident(round(self.seconds, 3), f"a {visit.who} finds no place"),)
+                self._note(f"a {visit.who} finds no place")
         else:
             self.left, self.inside = self.left + 1, self.inside - 1
-
-
-FIELDS = tuple(part.name for part in fields(CarPark))
-whole = attrgetter(*FIELDS)

@@ -11,13 +11,11 @@ Lengths are metres along the line, a pallet's place is the place of its front.
 """
 
 from bisect import bisect_right
-from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from math import inf
-from operator import attrgetter
 from typing import ClassVar, NamedTuple
 
-from ..plant import Point
+from ..plant import DIGITS, Machine, Point, remaining
 
 PALLET = 1.2  # its length
 BEARING = 0.01  # it bears on what is under it so far in from its ends
@@ -45,7 +43,7 @@ LIFT_S = 1.2
 # Where a pallet's front must come for something to change: its speed, what carries it, or a switch.
 MARKS = tuple(
     sorted(
-        round(place, 9)
+        round(place, DIGITS)
         for place in (
             *(switch + shift for switch in (AT_ENTRY, IN_LIFT, ACROSS, LEAVING) for shift in (0, PALLET)),
             *(bound + shift for bound in (LEFT_BED, MIDDLE, RIGHT_BED_END) for shift in (BEARING, PALLET / 2, PALLET - BEARING)),
@@ -53,7 +51,6 @@ MARKS = tuple(
         )
     )
 )
-INSTANT = 1e-9  # s and m; what lies nearer together is one
 START = 1e-6  # what turns a valve moves at once: this part of its travel
 
 
@@ -73,13 +70,10 @@ def stroke(place, valve, seconds):
 
 
 @dataclass
-class Conveyor:
+class Conveyor(Machine):
     """The machine, with pallets arriving at the given distances (rear to front, in metres), over and over.
 
-    A step of any length gives the same story: between two changes (a stop reached, a switch passed, a valve
-    turned) everything moves at a constant speed, so the machine goes from change to change exactly. All fields hold
-    values that a step replaces and never alters: `state()` and `restore()` cost about a microsecond, and so does
-    `copy.copy`.
+    Between two changes (a stop reached, a switch passed, a valve turned) everything moves at a constant speed.
     """
 
     wiring: ClassVar[dict[str, Point]] = {
@@ -97,11 +91,12 @@ class Conveyor:
         "Y4": Point("BeltL", "left belt and the strands in the left lift"),
         "Y5": Point("BeltR", "right belt and the strands in the right lift"),
     }
+    DRIVES: ClassVar[tuple[str, ...]] = ("Y0", "Y1", "Y2", "Y3", "Y4", "Y5")
+    EXACT: ClassVar[tuple[str, ...]] = ("gate", "left", "right", "fronts")
 
     distances: tuple[float, ...] = (0.5, 3.0, 0.4, 4.2, 2.6)
     first: float = 1.8  # where the first pallet stands
 
-    seconds: float = field(default=0.0, init=False)
     gate: float = field(default=0.0, init=False)  # 0 up and shut, 1 down and open
     left: float = field(default=0.0, init=False)  # lifts: 0 down, 1 up
     right: float = field(default=0.0, init=False)
@@ -110,47 +105,17 @@ class Conveyor:
     belt_left_m: float = field(default=0.0, init=False)  # how far each drive has run
     belt_right_m: float = field(default=0.0, init=False)
     rollers_m: float = field(default=0.0, init=False)
-    incidents: tuple[Incident, ...] = field(default=(), init=False)
-    inputs: dict[str, int] = field(default_factory=dict, init=False)  # what the switches say now
 
-    _outputs: tuple[int, ...] = field(default=(0, 0, 0, 0, 0, 0), init=False, repr=False)
-    _amiss: frozenset = field(default=frozenset(), init=False, repr=False)  # the incidents that last
     _rates: tuple[float, ...] = field(default=(0.0,) * 6, init=False, repr=False)  # of gate, lifts and drives, a second
     _speeds: tuple[float, ...] = field(default=(), init=False, repr=False)  # of the pallets
-    _steady_s: float = field(default=0.0, init=False, repr=False)  # nothing changes for so long
 
     def __post_init__(self):
         if not self.distances or min(self.distances) < 0:
             raise ValueError(f"distances: one or more lengths of 0 m or more are needed, not {self.distances}")
         if not self.first <= GATE:
             raise ValueError(f"first: the first pallet stands before the gate, at {GATE} m at most, not {self.first}")
-        self.fronts = (round(self.first, 9),)
-        self._settle()
-
-    def step(self, seconds: float, outputs: Mapping[str, int]) -> dict[str, int]:
-        """Let `seconds` pass under the outputs Y0 to Y5 and return the switches X0 to X4.
-
-        X5 and X6 are in the operator's hand, not in the machine's.
-        """
-        now = (outputs["Y0"], outputs["Y1"], outputs["Y2"], outputs["Y3"], outputs["Y4"], outputs["Y5"])
-        if now != self._outputs:
-            self._outputs = now
-            self._settle()
-        while seconds > self._steady_s - INSTANT:
-            self._move(self._steady_s)
-            seconds = max(0.0, seconds - self._steady_s)
-            self._settle()
-        self._move(seconds)
-        self._steady_s -= seconds
-        return self.inputs.copy()
-
-    def state(self) -> tuple:
-        """Everything the machine is, as a value; `restore` takes it back."""
-        return whole(self)
-
-    def restore(self, state: tuple) -> None:
-        """Make the machine what it was when `state` was taken."""
-        vars(self).update(zip(FIELDS, state, strict=True))
+        self.fronts = (round(self.first, DIGITS),)
+        super().__post_init__()
 
     def pose(self, front: float) -> tuple[float, float]:
         """How high a pallet with its front here is carried at its rear and at its front, as parts of the lifts' travel."""
@@ -158,7 +123,7 @@ class Conveyor:
 
     def _height(self, place):
         """How high what carries a pallet stands here."""
-        place = round(place, 9)
+        place = round(place, DIGITS)
         if place < LEFT_BED or place >= RIGHT_BED_END:
             return 0.0
         return self.left if place < MIDDLE else self.right
@@ -166,7 +131,6 @@ class Conveyor:
     def _move(self, seconds):
         """Let everything go on as it goes."""
         gate, left, right, belt_left, belt_right, rollers = self._rates
-        self.seconds += seconds
         self.gate += gate * seconds
         self.left += left * seconds
         self.right += right * seconds
@@ -175,10 +139,7 @@ class Conveyor:
         self.rollers_m += rollers * seconds
         self.fronts = tuple([front + speed * seconds for front, speed in zip(self.fronts, self._speeds, strict=True)])
 
-    def _settle(self):
-        """Take note of what has just changed: how everything moves from here on, for how long, and what is amiss."""
-        self.gate, self.left, self.right = round(self.gate, 9), round(self.left, 9), round(self.right, 9)
-        self.fronts = tuple([round(front, 9) for front in self.fronts])
+    def _plan(self):
         self._pass_on()
         amiss = set()
         gate_valve, left_valve, right_valve, rollers, belt_left, belt_right = self._outputs
@@ -197,10 +158,13 @@ class Conveyor:
             FAST if rollers else 0.0,
         )
         self._speeds = tuple(speed for speed, _ in pallets)
-        self._steady_s = min(self._time_to_an_end(), *(seconds for _, seconds in pallets))
-        self.incidents += tuple(Incident(round(self.seconds, 6), *what) for what in sorted(amiss - self._amiss))
-        self._amiss = frozenset(amiss)
+        self._report(amiss)
         self.inputs = self._switches()
+        times = [remaining(place, rate) for place, rate in zip((self.gate, self.left, self.right), self._rates[:3], strict=True)]
+        return min(*times, *(seconds for _, seconds in pallets))
+
+    def _note(self, what):
+        self.incidents += (Incident(round(self.seconds, 6), *what),)
 
     def _pass_on(self):
         """Let the pallet that is through go, and let the next one come when there is room behind the last."""
@@ -211,12 +175,12 @@ class Conveyor:
         if rear >= ARRIVAL:
             number = self.delivered + len(self.fronts)  # of the last one; pallets count from 1
             distance = self.distances[(number - 1) % len(self.distances)]
-            self.fronts += (round(rear - distance, 9),)
+            self.fronts += (round(rear - distance, DIGITS),)
 
     def _over_gate(self, amiss):
         """Whether a pallet stands over the gate, which then cannot rise."""
         for number, front in enumerate(self.fronts, self.delivered + 1):
-            if round(front - PALLET, 9) < GATE < front:
+            if round(front - PALLET, DIGITS) < GATE < front:
                 amiss.add((number, "has the gate close under it"))
                 return True
         return False
@@ -237,7 +201,7 @@ class Conveyor:
             if speed:
                 keeps = min(keeps, (MARKS[bisect_right(MARKS, front)] - front) / speed if front < MARKS[-1] else inf)
             moves.append((speed, keeps))
-            ahead, ahead_speed = round(front - PALLET, 9), speed
+            ahead, ahead_speed = round(front - PALLET, DIGITS), speed
         return moves
 
     def _carried(self, number, front, amiss):
@@ -247,7 +211,7 @@ class Conveyor:
             amiss.add((number, "tips"))
             return 0.0
         _, _, _, rollers, belt_left, belt_right = self._outputs
-        centre = round(front - PALLET / 2, 9)
+        centre = round(front - PALLET / 2, DIGITS)
         if centre < LEFT_BED:
             speed = SLOW if belt_left else 0.0
         elif centre < MIDDLE:
@@ -266,16 +230,11 @@ class Conveyor:
             return 0.0
         return speed
 
-    def _time_to_an_end(self):
-        """How long until the gate or a lift reaches an end of its travel."""
-        ways = zip((self.gate, self.left, self.right), self._rates[:3], strict=True)
-        return min((((1 - place) if rate > 0 else place) / abs(rate) for place, rate in ways if rate), default=inf)
-
     def _switches(self):
         """What the limit switches say."""
 
         def pressed(place):
-            return int(any(round(front - PALLET, 9) < place <= front for front in self.fronts))
+            return int(any(round(front - PALLET, DIGITS) < place <= front for front in self.fronts))
 
         return {
             "X0": pressed(AT_ENTRY),
@@ -284,7 +243,3 @@ class Conveyor:
             "X3": pressed(ACROSS),
             "X4": pressed(LEAVING),
         }
-
-
-FIELDS = tuple(part.name for part in fields(Conveyor))
-whole = attrgetter(*FIELDS)

@@ -1,29 +1,19 @@
 """A pedestrian crossing: a road with cars that keep to their lights, people who press a button, wait, and walk."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from math import inf
-from operator import attrgetter
-from typing import ClassVar, NamedTuple
+from typing import ClassVar
 
-from ..plant import Faulty, Point
+from ..plant import INSTANT, Machine, Point
 
 STOP_S = 2.0  # a car that is nearer than this cannot stop any more when the light turns
 CROSS_S = 6.0  # a walker needs so long across
 PATIENCE_S = 60.0  # who waits longer walks without his light
 DRAWN = 8  # so many cars that have passed are remembered for the picture
-INSTANT = 1e-9
-
-
-class Incident(NamedTuple):
-    """Something that must not happen on the road, as a fact: when, and what."""
-
-    seconds: float
-    what: str
 
 
 @dataclass
-class Crossing(Faulty):
+class Crossing(Machine):
     """The crossing. `cars` are the seconds at which a car reaches the line, `walkers` those at which somebody comes to the kerb.
 
     A car goes on when its light is green, or yellow and it can no longer stop; a walker goes when his light is green. Lamps
@@ -39,13 +29,13 @@ class Crossing(Faulty):
         "Y4": Point("WalkGrn", "walkers: green"),
         "Y5": Point("Wait", "the sign at the kerb: the button was pressed, please wait"),
     }
+    DRIVES: ClassVar[tuple[str, ...]] = ("Y0", "Y1", "Y2", "Y3", "Y4")
+    EXACT: ClassVar[tuple[str, ...]] = ("seconds",)
     FAULTS: ClassVar[dict[str, str]] = {"button sticks": "the button is pressed all the time", "button dead": "the button's wire is broken"}
 
     cars: tuple[float, ...] = ()
     walkers: tuple[float, ...] = ()
 
-    faults: frozenset[str] = field(default=frozenset(), init=False)
-    seconds: float = field(default=0.0, init=False)
     waiting: tuple[float, ...] = field(default=(), init=False)  # since when each waits at the kerb
     walking: tuple[float, ...] = field(default=(), init=False)  # since when each is on the road
     queue: int = field(default=0, init=False)  # cars at the line
@@ -54,55 +44,23 @@ class Crossing(Faulty):
     leaving: tuple[tuple[int, float, int], ...] = field(
         default=(), init=False
     )  # the last cars over the line: number, when, place in the queue
-    incidents: tuple[Incident, ...] = field(default=(), init=False)
 
-    _outputs: tuple[int, ...] = field(default=(0,) * 5, init=False, repr=False)
     _next_car: int = field(default=0, init=False, repr=False)
     _next_walker: int = field(default=0, init=False, repr=False)
+    _lamps: tuple[int, ...] = field(default=(0,) * 5, init=False, repr=False)  # what they were
     _green_since: float = field(default=-inf, init=False, repr=False)  # when the cars' light left green, or inf while it is green
-    _due: float = field(default=0.0, init=False, repr=False)  # the next moment at which something happens
-    _pressed: bool = field(default=False, init=False, repr=False)
 
     def __post_init__(self):
         for name in ("cars", "walkers"):
             times = getattr(self, name)
             if any(one < 0 for one in times) or list(times) != sorted(times):
                 raise ValueError(f"{name}: times from 0 s on in their order are needed, not {times}")
-        self._settle()
+        super().__post_init__()
 
-    def step(self, seconds: float, outputs: Mapping[str, int]) -> dict[str, int]:
-        """Let `seconds` pass under the lamps Y0 to Y4; returns the button X0."""
-        now = (outputs["Y0"], outputs["Y1"], outputs["Y2"], outputs["Y3"], outputs["Y4"])
-        if now != self._outputs:
-            self._turn(now)
-        end = self.seconds + seconds
-        while self._due <= end + INSTANT:
-            self.seconds = max(self.seconds, self._due)
-            self._settle()
-        self.seconds = end
-        return {"X0": int(("button sticks" in self.faults or self._pressed) and "button dead" not in self.faults)}
-
-    def state(self) -> tuple:
-        """Everything the crossing is, as a value; `restore` takes it back."""
-        return whole(self)
-
-    def restore(self, state: tuple) -> None:
-        """Make the crossing what it was when `state` was taken."""
-        vars(self).update(zip(FIELDS, state, strict=True))
-
-    def _turn(self, lamps):
-        """The lamps have changed."""
-        was_green, green = self._outputs[2], lamps[2]
-        self._outputs = lamps
-        if was_green and not green:
-            self._green_since = self.seconds
-        if green and lamps[4]:
-            self._note("cars and walkers have green together")
-        self._settle()
-
-    def _settle(self):
-        """What happens at this moment, and when the next thing will."""
+    def _plan(self):
         now = self.seconds
+        if self._outputs != self._lamps:
+            self._turn()
         self._walk(now)
         self._drive(now)
         moments = [*(start + CROSS_S for start in self.walking), *(start + PATIENCE_S for start in self.waiting)]
@@ -110,8 +68,18 @@ class Crossing(Faulty):
             moments.append(self.cars[self._next_car])
         if self._next_walker < len(self.walkers):
             moments.append(self.walkers[self._next_walker])
-        self._due = min((moment for moment in moments if moment > now + INSTANT), default=inf)
-        self._pressed = bool(self.waiting)
+        pressed = ("button sticks" in self.faults or self.waiting) and "button dead" not in self.faults
+        self.inputs = {"X0": int(bool(pressed))}
+        return min((moment for moment in moments if moment > now + INSTANT), default=inf) - now
+
+    def _turn(self):
+        """The lamps have changed."""
+        was_green, green, walk = self._lamps[2], self._outputs[2], self._outputs[4]
+        self._lamps = self._outputs
+        if was_green and not green:
+            self._green_since = self.seconds
+        if green and walk:
+            self._note("cars and walkers have green together")
 
     def _walk(self, now):
         while self._next_walker < len(self.walkers) and self.walkers[self._next_walker] <= now + INSTANT:
@@ -146,10 +114,3 @@ class Crossing(Faulty):
         self.leaving = (*self.leaving, *((first + place, self.seconds, place) for place in range(cars)))[-DRAWN:]
         if self.walking:
             self._note("a car drives while somebody is on the road")
-
-    def _note(self, what):
-        self.incidents += (Incident(round(self.seconds, 3), what),)
-
-
-FIELDS = tuple(part.name for part in fields(Crossing))
-whole = attrgetter(*FIELDS)

@@ -1,12 +1,10 @@
 """A garage door: a motor that opens and closes it, end switches, a light barrier, and cars that want in and out."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from math import inf
-from operator import attrgetter
-from typing import ClassVar, NamedTuple
+from typing import ClassVar
 
-from ..plant import Faulty, Point
+from ..plant import INSTANT, Machine, Point
 
 TRAVEL_S = 8.0  # from closed to open
 PASS_S = 4.0  # a car stands in the light barrier so long
@@ -14,21 +12,13 @@ CLEAR = 0.9  # the door must be so far open for a car
 TOUCH = 0.68  # here the door touches what stands under it
 LOWEST, HIGHEST = -0.02, 1.02  # so far the motor may push before something bends
 MARKS = (LOWEST, 0.0, TOUCH, CLEAR, 1.0, HIGHEST)
-INSTANT = 1e-9
-
-
-class Incident(NamedTuple):
-    """Something that must not happen to a door, as a fact: when, and what."""
-
-    seconds: float
-    what: str
 
 
 @dataclass
-class Garage(Faulty):
+class Garage(Machine):
     """The door. `cars` are the seconds at which a car wants to drive through; it waits until the door is open and then does.
 
-    A step of any length gives the same run: between two changes the door moves at a constant speed.
+    Between two changes the door moves at a constant speed.
     """
 
     wiring: ClassVar[dict[str, Point]] = {
@@ -40,51 +30,24 @@ class Garage(Faulty):
         "Y1": Point("MoveDown", "motor: closes"),
         "Y2": Point("Lamp", "warning lamp"),
     }
+    DRIVES: ClassVar[tuple[str, ...]] = ("Y0", "Y1")
+    EXACT: ClassVar[tuple[str, ...]] = ("place",)
     FAULTS: ClassVar[dict[str, str]] = {"child": "somebody stands in the doorway", "jammed": "the door cannot move"}
 
     cars: tuple[float, ...] = ()
 
-    faults: frozenset[str] = field(default=frozenset(), init=False)
-    seconds: float = field(default=0.0, init=False)
     place: float = field(default=0.0, init=False)  # 0 closed, 1 open
     inside: float = field(default=-inf, init=False)  # when the last car drove under the door
     waiting: int = field(default=0, init=False)  # cars before the door
     through: int = field(default=0, init=False)  # cars that have driven through
-    incidents: tuple[Incident, ...] = field(default=(), init=False)
 
-    _outputs: tuple[int, ...] = field(default=(0, 0), init=False, repr=False)
     _next_car: int = field(default=0, init=False, repr=False)
     _rate: float = field(default=0.0, init=False, repr=False)
-    _steady_s: float = field(default=0.0, init=False, repr=False)
-    _amiss: frozenset = field(default=frozenset(), init=False, repr=False)
-    _sensors: dict[str, int] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self):
         if any(one < 0 for one in self.cars) or list(self.cars) != sorted(self.cars):
             raise ValueError(f"cars: times from 0 s on in their order are needed, not {self.cars}")
-        self._settle()
-
-    def step(self, seconds: float, outputs: Mapping[str, int]) -> dict[str, int]:
-        """Let `seconds` pass under the motor Y0 and Y1; returns the switches X1 to X3. The key X0 is in the operator's hand."""
-        now = (outputs["Y0"], outputs["Y1"])
-        if now != self._outputs:
-            self._outputs = now
-            self._settle()
-        while seconds > self._steady_s - INSTANT:
-            self._move(self._steady_s)
-            seconds = max(0.0, seconds - self._steady_s)
-            self._settle()
-        self._move(seconds)
-        self._steady_s -= seconds
-        return self._sensors
-
-    def state(self) -> tuple:
-        """Everything the machine is, as a value; `restore` takes it back."""
-        return whole(self)
-
-    def restore(self, state: tuple) -> None:
-        """Make the machine what it was when `state` was taken."""
-        vars(self).update(zip(FIELDS, state, strict=True))
+        super().__post_init__()
 
     @property
     def blocked(self) -> bool:
@@ -102,12 +65,9 @@ class Garage(Faulty):
         return self.place <= 0 if self._rate <= 0 else self.place < 0
 
     def _move(self, seconds):
-        self.seconds += seconds
         self.place += self._rate * seconds
 
-    def _settle(self):
-        """Take note of what has just changed: how the door moves from here on, for how long, and what is amiss."""
-        self.place = round(self.place, 9)
+    def _plan(self):
         self._let_cars_through()
         up, down = self._outputs
         amiss = set()
@@ -121,16 +81,16 @@ class Garage(Faulty):
         elif rate > 0 and self.place >= high:
             amiss.add("the motor pushes the door against its end")
             rate = 0.0
-        self.incidents += tuple(Incident(round(self.seconds, 3), what) for what in sorted(amiss - self._amiss))
-        self._amiss, self._rate = frozenset(amiss), rate
-        self._sensors = {"X1": int(self.is_open), "X2": int(self.is_closed), "X3": int(not self.blocked)}
+        self._report(amiss)
+        self._rate = rate
+        self.inputs = {"X1": int(self.is_open), "X2": int(self.is_closed), "X3": int(not self.blocked)}
         ahead = [mark for mark in MARKS if (mark > self.place if rate > 0 else mark < self.place)]
         ways = [abs((min(ahead) if rate > 0 else max(ahead)) - self.place) / abs(rate)] if rate and ahead else []
         if self._next_car < len(self.cars):
             ways.append(self.cars[self._next_car] - self.seconds)
         if self.seconds < self.inside + PASS_S - INSTANT:
             ways.append(self.inside + PASS_S - self.seconds)
-        self._steady_s = min(ways, default=inf)
+        return min(ways, default=inf)
 
     def _let_cars_through(self):
         while self._next_car < len(self.cars) and self.cars[self._next_car] <= self.seconds + INSTANT:
@@ -140,7 +100,3 @@ class Garage(Faulty):
             self.waiting -= 1
             self.through += 1
             self.inside = self.seconds
-
-
-FIELDS = tuple(part.name for part in fields(Garage))
-whole = attrgetter(*FIELDS)

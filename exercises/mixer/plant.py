@@ -5,12 +5,11 @@ weight, D2 and M2 are what the screen says.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from math import inf
-from operator import attrgetter
 from typing import ClassVar, NamedTuple
 
-from ..plant import Faulty, Point
+from ..plant import Machine, Point, remaining
 
 RATES = (8.0, 8.0, 5.0, 4.0)  # kg/s of water, main material, A and B through an open valve
 DRAIN = 12.0  # kg/s
@@ -20,7 +19,6 @@ RUNNING = 0.9  # the part of the full speed from which its relay says so
 FULL = 3000.0  # kg: the vessel runs over
 BATCH, REST = 200.0, 20.0  # kg: so much is a batch, and so little of it an empty vessel
 ENDS = (("X0", "X1"), ("X2", "X3"), ("X4", "X5"), ("X6", "X7"), ("X11", "X12"))  # switches of the valves: open, closed
-INSTANT = 1e-9
 
 
 class Incident(NamedTuple):
@@ -43,11 +41,10 @@ class Batch(NamedTuple):
 
 
 @dataclass
-class Mixer(Faulty):
+class Mixer(Machine):
     """The machine. `valve_s` is how long each valve travels from closed to open: water, main material, A, B, drain.
 
-    A step of any length gives the same weights: between two changes (a valve at its end, the stirrer at its speed) flows
-    change at a constant rate, and are summed exactly. All fields hold values that a step replaces and never alters.
+    Between two changes (a valve at its end, the stirrer at its speed) flows change at a constant rate, and are summed exactly.
     """
 
     wiring: ClassVar[dict[str, Point]] = {
@@ -72,6 +69,8 @@ class Mixer(Faulty):
         "D2": Point("Product", "chosen on the touch screen: 1 is A, 2 is B"),
         "M2": Point("Batch", "batch start on the touch screen"),
     }
+    DRIVES: ClassVar[tuple[str, ...]] = ("Y0", "Y1", "Y2", "Y3", "Y4", "Y5")
+    EXACT: ClassVar[tuple[str, ...]] = ("places", "speed")
 
     FAULTS: ClassVar[dict[str, str]] = {
         "water sticks": "the water valve does not move",
@@ -85,8 +84,6 @@ class Mixer(Faulty):
 
     valve_s: tuple[float, ...] = (1.5, 1.5, 1.0, 1.0, 2.0)
 
-    faults: frozenset[str] = field(default=frozenset(), init=False)
-    seconds: float = field(default=0.0, init=False)
     weight: float = field(default=0.0, init=False)
     places: tuple[float, ...] = field(default=(0.0,) * 5, init=False)  # of the valves: 0 closed, 1 open
     speed: float = field(default=0.0, init=False)  # of the stirrer, part of the full one
@@ -96,21 +93,17 @@ class Mixer(Faulty):
     washed_s: float = field(default=0.0, init=False)  # how long water ran through the vessel since the last batch
     batches: tuple[Batch, ...] = field(default=(), init=False)
     spilt: float = field(default=0.0, init=False)  # kg that ran over
-    incidents: tuple[Incident, ...] = field(default=(), init=False)
 
-    _outputs: tuple[int, ...] = field(default=(0,) * 6, init=False, repr=False)
     _rates: tuple[float, ...] = field(default=(0.0,) * 6, init=False, repr=False)  # of valves and stirrer, a second
     _holds_batch: bool = field(default=False, init=False, repr=False)
     _moves: bool = field(default=False, init=False, repr=False)  # whether a valve does
     _flows: tuple[float, ...] = field(default=(0.0,) * 5, init=False, repr=False)  # kg/s of the feeds and the drain
     _bends: tuple[float, ...] = field(default=(0.0,) * 5, init=False, repr=False)  # and how they change, kg/s²
-    _steady_s: float = field(default=0.0, init=False, repr=False)
-    _sensors: dict[str, int] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self):
         if len(self.valve_s) != 5 or min(self.valve_s) <= 0:
             raise ValueError(f"valve_s: five times above 0 s are needed, not {self.valve_s}")
-        self._settle()
+        super().__post_init__()
 
     @property
     def finished(self) -> int:
@@ -118,62 +111,36 @@ class Mixer(Faulty):
         return len(self.batches)
 
     def step(self, seconds: float, outputs: Mapping[str, int]) -> dict[str, int]:
-        """Let `seconds` pass under the outputs Y0 to Y5; returns the switches X0 to X12 and the weight D0 in whole kg.
-
-        What the touch screen says, D2 and M2, is in the operator's hand.
-        """
-        now = (outputs["Y0"], outputs["Y1"], outputs["Y2"], outputs["Y3"], outputs["Y4"], outputs["Y5"])
-        if now != self._outputs:
-            self._outputs = now
-            self._settle()
-        while seconds > self._steady_s - INSTANT:
-            self._move(self._steady_s)
-            seconds = max(0.0, seconds - self._steady_s)
-            self._settle()
-        self._move(seconds)
-        self._steady_s -= seconds
+        """Let `seconds` pass under the outputs Y0 to Y5; returns the switches X0 to X12 and the weight D0 in whole kg."""
+        super().step(seconds, outputs)
         weight = int(self.weight + 1e-6)
-        if weight != self._sensors["D0"] and "scale hangs" not in self.faults:
-            self._sensors = {**self._sensors, "D0": weight}
-        return self._sensors
+        if weight != self.inputs["D0"] and "scale hangs" not in self.faults:
+            self.inputs = {**self.inputs, "D0": weight}
+        return self.inputs
 
-    def state(self) -> tuple:
-        """Everything the machine is, as a value; `restore` takes it back."""
-        return whole(self)
-
-    def restore(self, state: tuple) -> None:
-        """Make the machine what it was when `state` was taken."""
-        vars(self).update(zip(FIELDS, state, strict=True))
-
-    def _settle(self):
-        """Take note of what has just changed: how everything moves from here on, and for how long."""
-        places = tuple(round(place, 9) for place in self.places)
-        self.places, self.speed = places, round(self.speed, 9)
-        rates = []
-        steady = inf
+    def _plan(self):
+        places = self.places
+        rates, steady = [], inf
         faults, travels = self.faults, (*self.valve_s, RUN_UP_S)
         for fault, place, driven, travel in zip(self.FAULTS, (*places, self.speed), self._outputs, travels, strict=False):
             if fault in faults:
                 driven = 0 if fault == "stirrer trips" else place
             rate = 0.0 if place == driven else 1 / travel if driven else -1 / travel
             rates.append(rate)
-            if rate:
-                steady = min(steady, (1 - place if rate > 0 else place) * travel)
-        self._rates, self._steady_s, self._moves = tuple(rates), steady, any(rates[:5])
+            steady = min(steady, remaining(place, rate))
+        self._rates, self._moves = tuple(rates), any(rates[:5])
         self._flows = tuple([rate * place for rate, place in zip((*RATES, DRAIN), places, strict=True)])
         self._bends = tuple([rate * change for rate, change in zip((*RATES, DRAIN), rates, strict=False)])
         switches = {}
         for (opened, closed), place, rate in zip(ENDS, places, rates, strict=False):
             switches[opened], switches[closed] = int(place == 1 and not rate), int(place == 0 and not rate)
         switches["X10"] = int(self.speed >= RUNNING)
-        weight = self._sensors["D0"] if "scale hangs" in faults else int(self.weight + 1e-6)
-        self._sensors = switches | {"D0": weight}
+        weight = self.inputs["D0"] if "scale hangs" in faults else int(self.weight + 1e-6)
+        self.inputs = switches | {"D0": weight}
+        return steady
 
     def _move(self, seconds):
         """Let everything go on as it goes."""
-        if not seconds:
-            return
-        self.seconds += seconds
         if self._moves or any(self._flows):
             self._flow(seconds)
         if self.speed or self._rates[5]:
@@ -221,7 +188,3 @@ class Mixer(Faulty):
         """The batch has left the vessel."""
         self.batches += (Batch(*(round(amount, 3) for amount in (*self.dosed, self.stirred_s, self.washed_s))),)
         self.dosed, self.stirred_s, self.washed_s, self._holds_batch = (0.0,) * 4, 0.0, 0.0, False
-
-
-FIELDS = tuple(part.name for part in fields(Mixer))
-whole = attrgetter(*FIELDS)

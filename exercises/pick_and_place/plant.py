@@ -4,35 +4,25 @@ Parts come into a nest under the left end of the rail; the arm sets them on a pl
 are taken away. The carriage is 0 at the left and 1 at the right, the cylinder 0 above and 1 below, the gripper 0 open.
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from math import inf
-from operator import attrgetter
-from typing import ClassVar, NamedTuple
+from typing import ClassVar
 
-from ..plant import Faulty, Point, towards
+from ..plant import Machine, Point, remaining, towards
 
 RAIL_S = 1.6  # of the carriage, from end to end
 DOWN_S, UP_S = 0.6, 0.5  # of the cylinder
 CLOSE_S, OPEN_S = 0.25, 0.15  # of the gripper
 LOW = 0.05  # so far down the arm hits what stands beside it when the carriage travels
 STRAIN_S = 0.5  # so long the carriage may drive against an end
-INSTANT = 1e-9
-
-
-class Incident(NamedTuple):
-    """Something that must not happen to a machine, as a fact: when, and what."""
-
-    seconds: float
-    what: str
 
 
 @dataclass
-class Arm(Faulty):
+class Arm(Machine):
     """The machine. `pauses` are how long the nest stays empty before each part, over and over; `clears_s` is how long a
     part lies on the place; `carriage` is where it stands at first.
 
-    A step of any length gives the same run: between two changes everything moves at a constant rate.
+    Between two changes everything moves at a constant rate.
     """
 
     wiring: ClassVar[dict[str, Point]] = {
@@ -49,6 +39,8 @@ class Arm(Faulty):
         "Y2": Point("Down", "the cylinder goes down; a spring brings it up"),
         "Y3": Point("Grip", "the gripper closes; a spring opens it"),
     }
+    DRIVES: ClassVar[tuple[str, ...]] = ("Y0", "Y1", "Y2", "Y3")
+    EXACT: ClassVar[tuple[str, ...]] = ("carriage", "cylinder", "gripper", "_comes_s", "_away_s", "_strain_s")
     FAULTS: ClassVar[dict[str, str]] = {
         "slips": "the gripper closes and does not get hold of the part",
         "no air": "cylinder and gripper stay where they are",
@@ -60,8 +52,6 @@ class Arm(Faulty):
     clears_s: float = 2.0
     carriage: float = 0.0
 
-    faults: frozenset[str] = field(default=frozenset(), init=False)
-    seconds: float = field(default=0.0, init=False)
     cylinder: float = field(default=0.0, init=False)
     gripper: float = field(default=0.0, init=False)
     nest: bool = field(default=False, init=False)  # a part is in it
@@ -70,52 +60,22 @@ class Arm(Faulty):
     came: int = field(default=0, init=False)  # parts
     placed: int = field(default=0, init=False)
     lost: int = field(default=0, init=False)
-    incidents: tuple[Incident, ...] = field(default=(), init=False)
 
-    _outputs: tuple[int, ...] = field(default=(0,) * 4, init=False, repr=False)
     _rates: tuple[float, float, float] = field(default=(0.0,) * 3, init=False, repr=False)  # carriage, cylinder, gripper, a second
     _closed: bool = field(default=False, init=False, repr=False)  # the gripper; what it did not catch in closing it does not catch later
     _comes_s: float = field(default=inf, init=False, repr=False)  # until the next part
     _away_s: float = field(default=inf, init=False, repr=False)  # until the place is cleared
     _strain_s: float = field(default=inf, init=False, repr=False)  # until driving against an end does harm
-    _amiss: frozenset[str] = field(default=frozenset(), init=False, repr=False)  # what lasts, and is noted already
-    _steady_s: float = field(default=0.0, init=False, repr=False)
-    _sensors: dict[str, int] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self):
         if not self.pauses or min(self.pauses) < 0 or self.clears_s < 0 or not 0 <= self.carriage <= 1:
             raise ValueError(f"pauses and clears_s from 0 s and a carriage between 0 and 1 are needed, not {self}")
         self._comes_s = self.pauses[0]
-        self._settle()
-
-    def step(self, seconds: float, outputs: Mapping[str, int]) -> dict[str, int]:
-        """Let `seconds` pass under the outputs Y0 to Y3; returns the sensors X1 to X7. Auto is in the operator's hand."""
-        now = (outputs["Y0"], outputs["Y1"], outputs["Y2"], outputs["Y3"])
-        if now != self._outputs:
-            self._outputs = now
-            self._settle()
-        while seconds > self._steady_s - INSTANT:
-            self._move(self._steady_s)
-            seconds = max(0.0, seconds - self._steady_s)
-            self._settle()
-        self._move(seconds)
-        self._steady_s -= seconds
-        return self._sensors
-
-    def state(self) -> tuple:
-        """Everything the machine is, as a value; `restore` takes it back."""
-        return whole(self)
-
-    def restore(self, state: tuple) -> None:
-        """Make the machine what it was when `state` was taken."""
-        vars(self).update(zip(FIELDS, state, strict=True))
+        super().__post_init__()
 
     def _move(self, seconds):
         """Let everything go on as it goes."""
-        if not seconds:
-            return
         carriage, cylinder, gripper = self._rates
-        self.seconds += seconds
         self.carriage += carriage * seconds
         self.cylinder += cylinder * seconds
         self.gripper += gripper * seconds
@@ -123,10 +83,7 @@ class Arm(Faulty):
         self._away_s -= seconds
         self._strain_s -= seconds
 
-    def _settle(self):
-        """Take note of what has just changed: the parts, how everything moves from here on, and for how long."""
-        for name in ("carriage", "cylinder", "gripper", "_comes_s", "_away_s", "_strain_s"):
-            setattr(self, name, round(getattr(self, name), 9))
+    def _plan(self):
         right, left, down, grip = self._outputs
         way = bool(right) - bool(left)
         end = {1: 1.0, -1: 0.0}.get(way, self.carriage)
@@ -141,15 +98,11 @@ class Arm(Faulty):
         self._hand_over(rates)
         self._watch(rates, bool(way) and not rates[0], bool(right and left))
         self._look(rates)
-        ends = [
-            (1 - place if rate > 0 else place) / abs(rate)
-            for place, rate in zip((self.carriage, self.cylinder, self.gripper), rates, strict=True)
-            if rate
-        ]
+        ends = [remaining(place, rate) for place, rate in zip((self.carriage, self.cylinder, self.gripper), rates, strict=True)]
         if rates[0] and rates[1] > 0 and self.cylinder < LOW:
             ends.append((LOW - self.cylinder) / rates[1])
         ends += [wait for wait in (self._comes_s, self._away_s, self._strain_s) if wait > 0]
-        self._steady_s = min(ends, default=inf)
+        return min(ends)
 
     def _hand_over(self, rates):
         """Parts come, are gripped, lifted, set down, fall, and are taken away."""
@@ -211,7 +164,7 @@ class Arm(Faulty):
     def _look(self, rates):
         """What the sensors say: an end switch lets go as soon as its part leaves."""
         carriage, cylinder, _ = rates
-        self._sensors = {
+        self.inputs = {
             "X1": int(self.nest),
             "X2": int(self.carriage == 0 and not carriage),
             "X3": int(self.carriage == 1 and not carriage),
@@ -220,10 +173,3 @@ class Arm(Faulty):
             "X6": int(self.holds),
             "X7": int(not self.occupied),
         }
-
-    def _note(self, what):
-        self.incidents += (Incident(round(self.seconds, 3), what),)
-
-
-FIELDS = tuple(part.name for part in fields(Arm))
-whole = attrgetter(*FIELDS)

@@ -1,12 +1,10 @@
 """A motor that is started in star and runs in delta: three contactors and what they do to the motor and its fuses."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from math import inf
-from operator import attrgetter
-from typing import ClassVar, NamedTuple
+from typing import ClassVar
 
-from ..plant import Faulty, Point, towards
+from ..plant import Machine, Point, remaining, towards
 
 CLOSE_S, OPEN_S = 0.015, 0.025  # a contactor needs so long to close, and to open with its arc
 STAR_S, DELTA_S, COAST_S = 4.0, 2.0, 10.0  # from standstill to full speed, and back by itself
@@ -14,19 +12,11 @@ STAR_SPEED = 0.85  # in star it gets no faster
 SLOW = 0.7  # closing delta below this speed asks more of the mains than they give
 TRIP_S, COOL_S = 6.0, 30.0  # a motor that cannot turn trips its overload relay; it closes again when it is cool
 TURN_S = 0.6
-INSTANT = 1e-9
-
-
-class Incident(NamedTuple):
-    """Something that must not happen to a machine, as a fact: when, and what."""
-
-    seconds: float
-    what: str
 
 
 @dataclass
-class StarDelta(Faulty):
-    """The drive. A step of any length gives the same run: between two changes everything moves at a constant rate."""
+class StarDelta(Machine):
+    """The drive: between two changes everything moves at a constant rate."""
 
     wiring: ClassVar[dict[str, Point]] = {
         "X0": Point("Start", "push button"),
@@ -36,62 +26,29 @@ class StarDelta(Faulty):
         "Y1": Point("Star", "star contactor"),
         "Y2": Point("Delta", "delta contactor"),
     }
+    DRIVES: ClassVar[tuple[str, ...]] = ("Y0", "Y1", "Y2")
+    EXACT: ClassVar[tuple[str, ...]] = ("places", "speed", "heat")
     FAULTS: ClassVar[dict[str, str]] = {"jammed": "the shaft cannot turn", "star welded": "the star contactor does not open"}
 
-    faults: frozenset[str] = field(default=frozenset(), init=False)
-    seconds: float = field(default=0.0, init=False)
     places: tuple[float, float, float] = field(default=(0.0, 0.0, 0.0), init=False)  # contactors line, star, delta: 0 open, 1 closed
     speed: float = field(default=0.0, init=False)  # 1 is full speed
     turns: float = field(default=0.0, init=False)
     heat: float = field(default=0.0, init=False)  # 1 trips the overload relay
     tripped: bool = field(default=False, init=False)
     blown: bool = field(default=False, init=False)  # the fuses
-    incidents: tuple[Incident, ...] = field(default=(), init=False)
 
-    _outputs: tuple[int, ...] = field(default=(0, 0, 0), init=False, repr=False)
     _rates: tuple[float, ...] = field(default=(0.0,) * 5, init=False, repr=False)  # of the contactors, of speed and heat
     _closed: tuple[bool, ...] = field(default=(False,) * 3, init=False, repr=False)
-    _steady_s: float = field(default=0.0, init=False, repr=False)
-
-    def __post_init__(self):
-        self._settle()
-
-    def step(self, seconds: float, outputs: Mapping[str, int]) -> dict[str, int]:
-        """Let `seconds` pass under the contactors Y0 to Y2; returns the overload relay X2. The push buttons are in the operator's hand."""
-        now = (outputs["Y0"], outputs["Y1"], outputs["Y2"])
-        if now != self._outputs:
-            self._outputs = now
-            self._settle()
-        while seconds > self._steady_s - INSTANT:
-            self._move(self._steady_s)
-            seconds = max(0.0, seconds - self._steady_s)
-            self._settle()
-        self._move(seconds)
-        self._steady_s -= seconds
-        return {"X2": int(not self.tripped)}
-
-    def state(self) -> tuple:
-        """Everything the machine is, as a value; `restore` takes it back."""
-        return whole(self)
-
-    def restore(self, state: tuple) -> None:
-        """Make the machine what it was when `state` was taken."""
-        vars(self).update(zip(FIELDS, state, strict=True))
 
     def _move(self, seconds):
-        if not seconds:
-            return
         *rates, speed, heat = self._rates
-        self.seconds += seconds
         self.turns += (self.speed * seconds + speed * seconds * seconds / 2) / TURN_S
         self.places = tuple([place + rate * seconds for place, rate in zip(self.places, rates, strict=True)])
         self.speed += speed * seconds
         self.heat += heat * seconds
 
-    def _settle(self):
-        """Take note of what has just changed: how everything moves from here on, for how long, and what is amiss."""
-        places = self.places = tuple(round(place, 9) for place in self.places)
-        self.speed, self.heat = round(self.speed, 9), round(self.heat, 9)
+    def _plan(self):
+        places = self.places
         self.tripped = self.heat >= 1 or (self.tripped and self.heat > 0)
         line, star, delta = self._outputs
         driven = line, star or ("star welded" in self.faults and places[1] > 0), delta
@@ -115,14 +72,10 @@ class StarDelta(Faulty):
         if self.heat >= 1 and heat > 0:
             heat = 0.0
         self._rates = (*rates, speed, heat)
-        ends = [(1 - place if rate > 0 else place, rate) for place, rate in zip(places, rates, strict=True)]
-        ends += [(abs(top - self.speed), speed), (1 - self.heat if heat > 0 else self.heat, heat)]
-        self._steady_s = min((way / abs(rate) for way, rate in ends if rate), default=inf)
+        self.inputs = {"X2": int(not self.tripped)}
+        times = [remaining(place, rate) for place, rate in zip((*places, self.heat), (*rates, heat), strict=True)]
+        return min(*times, abs(top - self.speed) / abs(speed) if speed else inf)
 
     def _note(self, what):
-        self.incidents += (Incident(round(self.seconds, 3), what),)
+        super()._note(what)
         self.blown = True
-
-
-FIELDS = tuple(part.name for part in fields(StarDelta))
-whole = attrgetter(*FIELDS)

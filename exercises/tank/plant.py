@@ -4,12 +4,11 @@ Everything is in litres and seconds.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from math import inf
-from operator import attrgetter
-from typing import ClassVar, NamedTuple
+from typing import ClassVar
 
-from ..plant import Faulty, Point, towards
+from ..plant import DIGITS, INSTANT, Machine, Point, remaining, towards
 
 FULL = 500.0  # the tank runs over
 BOTTOM, LOW, HIGH = 50.0, 150.0, 400.0  # where the float switches are
@@ -18,21 +17,13 @@ PUMP = 12.0  # l/s of one pump at its speed
 RUN_UP_S = 1.0  # of a pump, and as long to stand still
 LEAK = 18.0  # l/s
 TURNS_S = 0.6  # of a pump's wheel at its speed, as it is drawn
-INSTANT = 1e-9
-
-
-class Incident(NamedTuple):
-    """Something that must not happen to a machine, as a fact: when, and what."""
-
-    seconds: float
-    what: str
 
 
 @dataclass
-class Tank(Faulty):
+class Tank(Machine):
     """The machine. `water` is what is in it at first; `demand` is what the consumers draw, (seconds, l/s) over and over.
 
-    A step of any length gives the same level: between two changes (a pump at its speed, another demand, the tank full or
+    Between two changes (a pump at its speed, another demand, the tank full or
     empty) the flow changes at a constant rate, and is summed exactly.
     """
 
@@ -48,6 +39,8 @@ class Tank(Faulty):
         "Y1": Point("PumpB", "pump B"),
         "Y2": Point("Alarm", "alarm lamp"),
     }
+    DRIVES: ClassVar[tuple[str, ...]] = ("Y0", "Y1")
+    EXACT: ClassVar[tuple[str, ...]] = ("water", "_phase_s", "speeds")
     FAULTS: ClassVar[dict[str, str]] = {
         "leak": "the tank has a hole",
         "A trips": "pump A has tripped its overload relay and gets no power",
@@ -60,24 +53,18 @@ class Tank(Faulty):
     water: float = 200.0
     demand: tuple[tuple[float, float], ...] = ((40.0, 3.0), (30.0, 5.0))
 
-    faults: frozenset[str] = field(default=frozenset(), init=False)
-    seconds: float = field(default=0.0, init=False)
     speeds: tuple[float, float] = field(default=(0.0, 0.0), init=False)  # of the pumps, 1 is the full one
     turns: tuple[float, float] = field(default=(0.0, 0.0), init=False)
     pumped: float = field(default=0.0, init=False)  # litres, since the beginning
     spilt: float = field(default=0.0, init=False)  # litres that ran over
     short: float = field(default=0.0, init=False)  # litres that consumers did not get
-    incidents: tuple[Incident, ...] = field(default=(), init=False)
 
-    _outputs: tuple[int, int] = field(default=(0, 0), init=False, repr=False)
     _rates: tuple[float, float] = field(default=(0.0, 0.0), init=False, repr=False)  # of the speeds, a second
     _phase: int = field(default=0, init=False, repr=False)  # of the demand
     _phase_s: float = field(default=0.0, init=False, repr=False)  # how much of it is left
     _flow: float = field(default=0.0, init=False, repr=False)  # l/s into the tank, what leaves taken off
     _bend: float = field(default=0.0, init=False, repr=False)  # and how it changes, l/s²
     _edge: str = field(default="", init=False, repr=False)  # "full" while it runs over, "dry" while there is nothing to draw
-    _steady_s: float = field(default=0.0, init=False, repr=False)
-    _sensors: dict[str, int] = field(default_factory=dict, init=False, repr=False)
     _between: tuple[float, float] = field(default=(0.0, 0.0), init=False, repr=False)  # litres: so long the sensors say the same
 
     def __post_init__(self):
@@ -86,7 +73,7 @@ class Tank(Faulty):
         if not self.demand or min(seconds for seconds, _ in self.demand) <= 0 or min(flow for _, flow in self.demand) < 0:
             raise ValueError(f"demand: (seconds above 0, l/s from 0) are needed, not {self.demand}")
         self._phase_s = self.demand[0][0]
-        self._settle()
+        super().__post_init__()
 
     @property
     def drawn(self) -> float:
@@ -94,38 +81,15 @@ class Tank(Faulty):
         return self.demand[self._phase][1]
 
     def step(self, seconds: float, outputs: Mapping[str, int]) -> dict[str, int]:
-        """Let `seconds` pass under the pumps Y0 and Y1; returns the float switches X1 to X3 and the overload relays X4 and X5.
-
-        Auto and Reset are in the operator's hand.
-        """
-        now = (outputs["Y0"], outputs["Y1"])
-        if now != self._outputs:
-            self._outputs = now
-            self._settle()
-        while seconds > self._steady_s - INSTANT:
-            self._move(self._steady_s)
-            seconds = max(0.0, seconds - self._steady_s)
-            self._settle()
-        self._move(seconds)
-        self._steady_s -= seconds
+        """Let `seconds` pass under the pumps Y0 and Y1; returns the float switches X1 to X3 and the overload relays X4 and X5."""
+        super().step(seconds, outputs)
         water = self.water + 1e-6
         if not self._between[0] <= water < self._between[1]:
             self._look(water)
-        return self._sensors
-
-    def state(self) -> tuple:
-        """Everything the machine is, as a value; `restore` takes it back."""
-        return whole(self)
-
-    def restore(self, state: tuple) -> None:
-        """Make the machine what it was when `state` was taken."""
-        vars(self).update(zip(FIELDS, state, strict=True))
+        return self.inputs
 
     def _move(self, seconds):
         """Let everything go on as it goes."""
-        if not seconds:
-            return
-        self.seconds += seconds
         self._phase_s -= seconds
         brought = self._flow * seconds
         if self._bend:
@@ -143,10 +107,8 @@ class Tank(Faulty):
             self.pumped += PUMP * sum(way for way, pump in zip(ways, "AB", strict=True) if f"{pump} blocked" not in self.faults)
             self.speeds = tuple([speed + rate * seconds for speed, rate in zip(self.speeds, self._rates, strict=True)])
 
-    def _settle(self):
-        """Take note of what has just changed: how everything moves from here on, and for how long."""
-        self.water, self._phase_s = round(self.water, 9), round(self._phase_s, 9)
-        speeds = self.speeds = tuple(round(speed, 9) for speed in self.speeds)
+    def _plan(self):
+        speeds = self.speeds
         if self._phase_s <= 0:
             self._phase = (self._phase + 1) % len(self.demand)
             self._phase_s = self.demand[self._phase][0]
@@ -154,27 +116,26 @@ class Tank(Faulty):
         rates = self._rates = tuple([towards(speed, int(bool(on)), RUN_UP_S) for speed, on in zip(speeds, driven, strict=True)])
         brings = [PUMP * (f"{pump} blocked" not in self.faults) for pump in "AB"]
         leak = LEAK * ("leak" in self.faults)
-        self._flow = round(sum(rate * speed for rate, speed in zip(brings, speeds, strict=True)) - self.drawn - leak, 9)
-        self._bend = round(sum(rate * change for rate, change in zip(brings, rates, strict=True)), 9)
+        self._flow = round(sum(rate * speed for rate, speed in zip(brings, speeds, strict=True)) - self.drawn - leak, DIGITS)
+        self._bend = round(sum(rate * change for rate, change in zip(brings, rates, strict=True)), DIGITS)
         rising = self._flow > 0 or (self._flow == 0 and self._bend > 0)
         falling = self._flow < 0 or (self._flow == 0 and self._bend < 0)
         edge = "full" if self.water >= FULL and rising else "dry" if self.water <= 0 and falling else ""
         if edge and edge != self._edge:
-            self.incidents += (Incident(round(self.seconds, 3), "the tank runs over" if edge == "full" else "the tank is empty"),)
+            self._note("the tank runs over" if edge == "full" else "the tank is empty")
         self._edge = edge
-        ends = [self._phase_s]
-        ends += [(1 - speed if rate > 0 else speed) / abs(rate) for speed, rate in zip(speeds, rates, strict=True) if rate]
+        ends = [self._phase_s, *(remaining(speed, rate) for speed, rate in zip(speeds, rates, strict=True))]
         if self._flow * self._bend < 0:
             ends.append(-self._flow / self._bend)  # rising turns to falling, or the other way round
         if not edge and (rising or falling):
             ends.append(_until((FULL if rising else 0.0) - self.water, self._flow, self._bend))
-        self._steady_s = max(min(ends), INSTANT)
         self._look(self.water + 1e-6)
+        return max(min(ends), INSTANT)
 
     def _look(self, water):
         """What float switches and overload relays say."""
         self._between = max(mark for mark in MARKS if mark <= water), min(mark for mark in MARKS if mark > water)
-        self._sensors = {
+        self.inputs = {
             "X1": int(water >= BOTTOM),
             "X2": int(water >= LOW),
             "X3": int(water >= HIGH and "float hangs" not in self.faults),
@@ -192,7 +153,3 @@ def _until(way: float, flow: float, bend: float) -> float:
         return inf
     seconds = 2 * way / (flow + root**0.5 * (1 if way >= 0 and flow >= 0 else -1)) if way else 0.0
     return seconds if seconds >= 0 else inf
-
-
-FIELDS = tuple(part.name for part in fields(Tank))
-whole = attrgetter(*FIELDS)

@@ -325,10 +325,11 @@ def test_a_copy_goes_its_own_way():
     assert plant.state() == before
 
 
-def test_what_a_step_returns_is_the_callers():
-    plant = Conveyor()
-    plant.step(0.01, OFF)["X0"] = 7
-    assert plant.step(0.01, OFF)["X0"] == 0
+def test_what_a_step_has_returned_stays_as_it_was():
+    plant = Conveyor(distances=(20.0,))
+    before = plant.step(0.01, OFF)
+    assert hold(plant, 5, Y4=1)["X0"] == 1
+    assert before["X0"] == 0
 
 
 @pytest.mark.parametrize("wrong", [{"distances": ()}, {"distances": (1.0, -0.1)}, {"first": 3.5}])
