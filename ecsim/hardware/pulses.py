@@ -1,7 +1,8 @@
-"""The pulse outputs Y0 and Y1 (6.10.9 to 6.10.12, 6.17, 8.3): who owns them, what they put out and what they report.
+"""The pulse outputs, of EC Y0 and Y1 (6.10.9 to 6.10.12, 6.17, 8.3): who owns them, what they put out and what they report.
 
 The first instruction that becomes effective owns an output until its flow goes, also when its pulses are over. SM80/81 ON
-stop the pulses; SM82/83 tell that pulses come; SD50 to SD55 count them, SD80 to SD83 follow them while positioning.
+stop the pulses; SM82/83 tell that pulses come; SD50 to SD55 count them, SD80 to SD83 follow them while positioning. Which
+relays and registers these are, and how many outputs there are, is the model's.
 """
 
 from collections import deque
@@ -11,13 +12,13 @@ from itertools import islice
 
 from ..devices import Device
 from ..memory import Memory
+from ..models.model import PulseOutput
 from ..values import join, split
 from .inputs import Inputs
 from .interrupts import Interrupts
 from .trains import Ramps, Segment, Wave
 from .unit import Unit
 
-COMPLETE = 18  # event of Y0; Y1 has the next one
 CLEAR_US = 20_000  # 6.17.6: the clear pulse lasts 20 ms and one scan
 KEPT = 4096  # segments that are remembered of an output
 
@@ -60,7 +61,7 @@ class Axis:
 
 
 class PulseOutputs(Unit):
-    """Both outputs; `trains` keeps what they have put out, to be read as times and as a frequency curve."""
+    """All outputs; `trains` keeps what they have put out, to be read as times and as a frequency curve."""
 
     rank = 1
 
@@ -68,20 +69,29 @@ class PulseOutputs(Unit):
         super().__init__(awake)
         self.memory, self.inputs, self.interrupts, self.model = memory, inputs, interrupts, memory.model
         self.period = period  # how long a scan takes, in us
-        self.axes = (Axis(0), Axis(1)) if "pulse busy" in self.model.relays else ()
-        self.history: tuple[deque, deque] = (deque(maxlen=KEPT), deque(maxlen=KEPT))
+        self.axes = tuple(Axis(number) for number in range(len(self.model.pulse_outputs)))
+        self.history: tuple[deque, ...] = tuple(deque(maxlen=KEPT) for _ in self.axes)
+        self._order = slice(None) if self.model.high_word_first else slice(None, None, -1)  # the words of a 32-bit register
+
+    def _map(self, axis: Axis) -> PulseOutput:
+        return self.model.pulse_outputs[axis.number]
 
     def _bits(self) -> list:
         return self.memory.lists[self.model.special_bits]
 
     def _add(self, number: int, amount: int) -> None:
-        registers = self.memory.lists[self.model.special_words]
-        registers[number : number + 2] = split(join(registers[number], registers[number + 1]) + amount)
+        self._put(number, self.register(number) + amount)
 
-    def register(self, meaning: str, axis: int = 0) -> int:
-        """A 32-bit register of an output: "position", "pulses"."""
-        registers, number = self.memory.lists[self.model.special_words], self.model.registers[meaning] + 2 * axis
-        return join(registers[number], registers[number + 1])
+    def _put(self, number: int, value: int) -> None:
+        self.memory.lists[self.model.special_words][number : number + 2] = split(value)[self._order]
+
+    def register(self, number: int) -> int:
+        """A 32-bit special register."""
+        return join(*self.memory.lists[self.model.special_words][number : number + 2][self._order])
+
+    def position(self, number: int) -> int:
+        """Where the axis of an output stands, in pulses."""
+        return self.register(self.model.pulse_outputs[number].position)
 
     # -- what commands ask for ----------------------------------------------------------------------------------
 
@@ -93,8 +103,8 @@ class PulseOutputs(Unit):
         return None
 
     def open(self, number: int) -> bool:
-        """Whether SM80 or SM81 lets pulses pass."""
-        return not self._bits()[self.model.relays["pulse stop"] + number]
+        """Whether its stop relay lets pulses pass."""
+        return not self._bits()[self.model.pulse_outputs[number].stop]
 
     def start(self, axis: Axis, claim: int, segments: tuple[Segment | Wave, ...], now: int, **rest) -> None:
         """Take an output and begin to put out pulses."""
@@ -207,20 +217,19 @@ class PulseOutputs(Unit):
             outputs[axis.number] = segment.level(now)
 
     def _note(self, axis: Axis, segment: Segment, pulses: int) -> None:
-        registers = self.model.registers
         axis.total += pulses
-        self._add(registers["pulses"] + 2 * axis.number, pulses)
-        self._add(registers["pulses of both"], pulses)
+        self._add(self.model.registers["pulses of all"], pulses)
+        if not segment.direction or self._map(axis).pulses != self._map(axis).position:
+            self._add(self._map(axis).pulses, pulses)
         if segment.direction:
-            self._add(registers["position"] + 2 * axis.number, pulses * segment.direction)
+            self._add(self._map(axis).position, pulses * segment.direction)
 
     def _segment(self, axis: Axis) -> None:
-        place = self.model.registers.get("segment")
-        if place is not None:
-            self.memory.lists[self.model.special_words][place + axis.number] = axis.segments[0].number if axis.segments else 0
+        if self._map(axis).segment is not None:
+            self.memory.lists[self.model.special_words][self._map(axis).segment] = axis.segments[0].number if axis.segments else 0
 
     def _show(self, axis: Axis, now: int) -> None:
-        self._bits()[self.model.relays["pulse busy"] + axis.number] = bool(axis.segments)
+        self._bits()[self._map(axis).busy] = bool(axis.segments)
         self.memory.lists["Y"][axis.number] = bool(axis.segments) and axis.segments[0].level(now)
         self._segment(axis)
 
@@ -230,12 +239,12 @@ class PulseOutputs(Unit):
                 self._dog(axis, self.inputs.terminals[axis.home.dog.number], now)
             if axis.clearing and axis.clearing <= now:
                 axis.clearing = 0
-                self.memory.lists["Y"][2 + axis.number] = False
+                self.memory.lists["Y"][self._map(axis).clear] = False
                 self._rest()
             if axis.segments and axis.end is not None and axis.end <= now:
                 self._halt(axis, now)
                 if axis.completes:
-                    self.interrupts.fire(COMPLETE + axis.number)
+                    self._complete(axis)
 
     def sense(self, axis: Axis, now: int) -> None:
         """A ZRN has begun: it may stand on its near-point switch already."""
@@ -261,14 +270,19 @@ class PulseOutputs(Unit):
         elif not on and home.seen:
             self._halt(axis, now)
             axis.completes = False
-            registers, place = self.memory.lists[self.model.special_words], self.model.registers["position"] + 2 * axis.number
-            registers[place : place + 2] = 0, 0
-            clear = self.model.relays.get("clear signal")
-            if clear is not None and self._bits()[clear]:
+            self._put(self._map(axis).position, 0)
+            if self._map(axis).clear is not None and self._bits()[self.model.relays["clear signal"]]:
                 axis.clearing = now + CLEAR_US + self.period()
-                self.memory.lists["Y"][2 + axis.number] = True
+                self.memory.lists["Y"][self._map(axis).clear] = True
                 self.wake()
-            self.interrupts.fire(COMPLETE + axis.number)
+            self._complete(axis)
+
+    def _complete(self, axis: Axis) -> None:
+        """The pulses of a command, or a return to the origin, are over."""
+        complete = self.model.relays.get("complete")
+        if complete is not None:
+            self._bits()[complete] = True
+        self.interrupts.fire(self._map(axis).event)
 
     # -- what was put out ---------------------------------------------------------------------------------------
 

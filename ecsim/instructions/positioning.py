@@ -13,7 +13,7 @@ def _limits(machine) -> tuple[int, int, int]:
     """Base and top frequency and ramp time (SD84 to SD87); a base that is not below a tenth of the top is set to that (6.17.6)."""
     model = machine.model
     registers = machine.memory.lists[model.special_words]
-    top, ramp = machine.outputs.register("top frequency"), registers[model.registers["ramp time"]]
+    top, ramp = machine.outputs.register(model.registers["top frequency"]), registers[model.registers["ramp time"]]
     place = model.registers["base frequency"]
     if registers[place] * 10 >= top > 0:
         registers[place] = top // 10
@@ -110,7 +110,7 @@ def drva(machine, claim, target, hertz, output, direction):
     """Move to the position S1 at S2 Hz on D1 with ramps; D2 is the direction. Without flow it slows down and stops."""
     if abs(target) > FARTHEST or not SLOWEST <= hertz <= FASTEST:
         raise Fault(OPERAND)
-    _move(machine, claim, target - machine.outputs.register("position", output), hertz, output, direction)
+    _move(machine, claim, target - machine.outputs.position(output), hertz, output, direction)
 
 
 @command(

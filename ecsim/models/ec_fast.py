@@ -1,6 +1,6 @@
 """The fast side of EC10 and EC20 as data: high-speed counters, interrupt events, relays and registers of chapters 8, 9 and 6.17."""
 
-from .model import FastCounter
+from .model import FastCounter, PulseOutput
 
 _SINGLE = {236: (0,), 237: (1,), 238: (2,), 239: (3,), 240: (4,), 241: (5,), 242: (0, 2), 243: (3, 5), 244: (0, 2, 6), 245: (3, 5, 7)}
 _PAIRS = ((0, 1), (0, 1, 2), (3, 4, 5), (0, 1, 2, 6), (3, 4, 5, 7))
@@ -27,9 +27,9 @@ _EVENTS_EC20 = {
 }
 _EVENTS_EC10 = _EVENTS_EC20 | {18: 63, 19: 64, 29: 56, **{event: event + 18 for event in range(30, 38)}}
 
-RELAYS = {"capture": 90, "pulse stop": 80, "pulse busy": 82, "table done": 185}
+RELAYS = {"capture": 90, "table done": 185}
 REGISTERS = {
-    "pulses": 50, "pulses of both": 54, "position": 80, "base frequency": 84, "top frequency": 85, "ramp time": 87,
+    "pulses of all": 54, "base frequency": 84, "top frequency": 85, "ramp time": 87,
     "table output": 180, "table value": 182, "table record": 184,
 }  # fmt: skip
 # 6.17.6: SD84 to SD87; appendix 2: SD88 and SD89. 100000 = 1 * 65536 + 34464
@@ -43,7 +43,16 @@ LIMITS = {
     "Hz interrupting": 200, "Hz interrupting together": 1000,
 }  # fmt: skip
 
-EC20 = {"fast_counters": FAST_COUNTERS, "events": _EVENTS_EC20}
-EC10 = {"fast_counters": FAST_COUNTERS, "events": _EVENTS_EC10, "least_ramp_ms": 50}
+
+def _pulse_outputs(**more: int) -> tuple[PulseOutput, ...]:
+    """Y0 and Y1; of EC10 the clear signal goes to Y2 and Y3, SD56 and SD57 tell the steps of envelopes."""
+    return tuple(
+        PulseOutput(80 + n, 82 + n, 50 + 2 * n, 80 + 2 * n, 18 + n, **{name: first + n for name, first in more.items()}) for n in range(2)
+    )
+
+
+EC20 = {"fast_counters": FAST_COUNTERS, "events": _EVENTS_EC20, "pulse_outputs": _pulse_outputs()}
+EC10 = {
+    "fast_counters": FAST_COUNTERS, "events": _EVENTS_EC10, "pulse_outputs": _pulse_outputs(clear=2, segment=56), "least_ramp_ms": 50
+}  # fmt: skip
 RELAYS_EC10 = {"clear signal": 85}
-REGISTERS_EC10 = {"segment": 56}

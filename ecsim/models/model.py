@@ -49,6 +49,22 @@ class FastCounter:
 
 
 @dataclass(frozen=True, slots=True)
+class PulseOutput:
+    """The relays, registers and event of one pulse output, Y0 or one of those that follow: 32-bit registers by their first number.
+
+    Where `pulses` and `position` are one register it counts up and down while positioning, and up otherwise.
+    """
+
+    stop: int  # ON: no pulses
+    busy: int  # ON while pulses come
+    pulses: int
+    position: int
+    event: int  # its pulses are complete
+    clear: int | None = None  # the output that ZRN's clear signal goes to
+    segment: int | None = None  # the register that tells the step of an envelope
+
+
+@dataclass(frozen=True, slots=True)
 class PortMap:
     """A serial port: what it can speak, the usual protocol first, and its special devices and interrupt events by meaning."""
 
@@ -186,6 +202,7 @@ class Model:
     fast_counters: dict[int, FastCounter] = field(default_factory=dict)
     events: dict[int, int] = field(default_factory=dict)  # interrupt event -> the special relay that enables it (9.1)
     least_ramp_ms: int = 0  # of PLSR
+    pulse_outputs: tuple[PulseOutput, ...] = ()
     battery: bool = True  # whether a battery keeps the retained devices (2.1.10)
     reff_ms: tuple[int, ...] = (0,)  # what REFF may set the input filter to
     modbus: tuple[ModbusRange, ...] = ()
