@@ -61,17 +61,19 @@ def hour(flow, limit, meter, alarm, now, scan, state):
 
     Time counts from one execution to the next scan's: what is jumped over or switched off by MC does not count.
     """
+    hours, second, state = run_on(flow, *meter, 0x8000, now, scan, state)  # 6.9.5: after 32767 hours it begins again at 0
+    return [hours, second], (hours >= limit if flow else alarm), state
+
+
+def run_on(flow, hours, second, end, now, scan, state):
+    """A running-time meter, which begins again at 0 after `end` hours, after one more execution: hours, seconds and its state."""
     since, last, rest = state or (None, 0, 0)
     if since is not None and scan - last <= 1:
         rest += now - since
     whole, rest = divmod(rest, SECOND_US)
-    hours, second = divmod(meter[1] + whole, 3600)
-    hours += meter[0]
-    if hours > 0x7FFF:  # 6.9.5: after 32767 hours it begins again at 0
-        hours -= 0x8000
-    if flow:
-        alarm = hours >= limit
-    return [hours, second], alarm, (now if flow else None, scan, rest)
+    more, second = divmod(second + whole, 3600)
+    hours += more
+    return hours - end if hours >= end else hours, second, (now if flow else None, scan, rest)
 
 
 def day_of(day: list[int]) -> list[int]:

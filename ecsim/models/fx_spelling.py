@@ -10,6 +10,14 @@ _COMPARISONS = {
     f"{join}{wide}{relation}" for join in ("LD", "AND", "OR") for wide in ("", "D") for relation in ("=", ">", "<", "<>", "<=", ">=")
 }
 
+ALL = (0, 0xFFFF)
+
+
+def _into(word: str, bits: str) -> By:
+    """A choice by the second operand: a word, or a run of bits."""
+    return By(word, *((area, *ALL, bits) for area in "YMS"))
+
+
 H2U: dict[str, str | By] = {
     # basic instructions
     **{name: name for name in "LD LDI AND ANI OR ORI ANB ORB MPS MRD MPP INV NOP STL RET SET RST MC MCR".split()},
@@ -23,17 +31,33 @@ H2U: dict[str, str | By] = {
     "FOR": "FOR",
     "NEXT": "NEXT",
     # FNC 10 to 19: comparing and moving
+    "CMP": "FX:CMP",
+    "DCMP": "FX:DCMP",
+    "ZCP": "FX:ZCP",
+    "DZCP": "FX:DZCP",
     "MOV": "MOV",
     "DMOV": "DMOV",
+    "SMOV": "FX:SMOV",
     "CML": "WINV",
     "DCML": "DWINV",
-    "FMOV": "FMOV",
-    "DFMOV": "DFMOV",
-    "BCD": "BCD",
-    "DBCD": "DBCD",
-    "BIN": "BIN",
-    "DBIN": "DBIN",
+    "BMOV": "FX:BMOV",
+    "FMOV": "FX:FMOV",
+    "DFMOV": "FX:DFMOV",
+    "XCH": "FX:XCH",
+    "DXCH": "FX:DXCH",
+    "BCD": "FX:BCD",
+    "DBCD": "FX:DBCD",
+    "BIN": "FX:BIN",
+    "DBIN": "FX:DBIN",
     # FNC 20 to 29: arithmetic and logic
+    "ADD": "FX:ADD",
+    "DADD": "FX:DADD",
+    "SUB": "FX:SUB",
+    "DSUB": "FX:DSUB",
+    "MUL": "MUL",
+    "DMUL": "FX:DMUL",
+    "DIV": "FX:DIV",
+    "DDIV": "FX:DDIV",
     "INC": "INC",
     "DINC": "DINC",
     "DEC": "DEC",
@@ -47,10 +71,39 @@ H2U: dict[str, str | By] = {
     "WXOR": "WXOR",
     "DXOR": "DWXOR",
     "DWXOR": "DWXOR",
+    "NEG": "FX:NEG",
+    "DNEG": "FX:DNEG",
     # FNC 30 to 39: rotating and shifting
+    "ROR": "FX:ROR",
+    "DROR": "FX:DROR",
+    "ROL": "FX:ROL",
+    "DROL": "FX:DROL",
+    "RCR": "FX:RCR",
+    "DRCR": "FX:DRCR",
+    "RCL": "FX:RCL",
+    "DRCL": "FX:DRCL",
+    "SFTR": "FX:SFTR",
+    "SFTL": "FX:SFTL",
+    "WSFR": "FX:WSFR",
+    "WSFL": "FX:WSFL",
+    "SFWR": "FX:SFWR",
+    "SFRD": "FX:SFRD",
     # FNC 40 to 49: data
-    "FLT": "FLT",
-    "DFLT": "DFLT",
+    "ZRST": By("FX:ZRST", ("D", *ALL, "FX:ZRST D")),
+    "DECO": By(_into("FX:DECO", "FX:DECO to bits"), *((area, *ALL, _into("FX:DECO bits", "FX:DECO bits to bits")) for area in "XYMS")),
+    "ENCO": By("FX:ENCO", *((area, *ALL, "FX:ENCO bits") for area in "XYMS")),
+    "SUM": "FX:SUM",
+    "DSUM": "FX:DSUM",
+    "BON": "FX:BON",
+    "DBON": "FX:DBON",
+    "MEAN": "FX:MEAN",
+    "DMEAN": "FX:DMEAN",
+    "ANS": "FX:ANS",
+    "ANR": "FX:ANR",
+    "SQR": "FX:SQR",
+    "DSQR": "FX:DSQR",
+    "FLT": "FX:FLT",
+    "DFLT": "FX:DFLT",
     # FNC 50 to 59: high-speed processing
     "MTR": "FX:MTR",
     # FNC 60 to 69: convenient instructions
@@ -82,13 +135,42 @@ H2U: dict[str, str | By] = {
     "TO": "FX:TO",
     "DTO": "FX:DTO",
     # FNC 80 to 88: serial devices
+    "PRUN": By("FX:PRUN", ("KnM", *ALL, "FX:PRUN M")),
+    "DPRUN": By("FX:DPRUN", ("KnM", *ALL, "FX:DPRUN M")),
+    "ASCI": "FX:ASCI",
+    "HEX": "FX:HEX",
+    "CCD": "FX:CCD",
     "VRRD": "FX:VRRD",
     "VRSC": "FX:VRSC",
     "PID": "FX:PID",
-    # FNC 110 to 132: floating point
+    # FNC 110 to 132: floating point, whose names are written with D in front
+    "DECMP": "FX:ECMP",
+    "DEZCP": "FX:EZCP",
+    "DEBCD": "FX:EBCD",
+    "DEBIN": "FX:EBIN",
+    "DEADD": "RADD",
+    "DESUB": "RSUB",
+    "DEMUL": "RMUL",
+    "DEDIV": "RDIV",
+    "DESQR": "RSQT",
+    "INT": "FX:INT",
+    "DINT": "FX:DINT",
+    "DSIN": "FX:SIN",
+    "DCOS": "FX:COS",
+    "DTAN": "FX:TAN",
     # FNC 147: swapping bytes
+    "SWAP": "SWAP",
+    "DSWAP": "FX:DSWAP",
     # FNC 155 to 159: positioning
     # FNC 160 to 169: clock
+    "TCMP": "FX:TCMP",
+    "TZCP": "FX:TZCP",
+    "TADD": "FX:TADD",
+    "TSUB": "FX:TSUB",
+    "TRD": "FX:TRD",
+    "TWR": "FX:TWR",
+    "HOUR": "FX:HOUR",
+    "DHOUR": "FX:DHOUR",
     # FNC 170 and 171: Gray code
     "GRY": "GRY",
     "DGRY": "DGRY",

@@ -189,6 +189,7 @@ class Model:
     first_special: int = 0  # where special devices share an area with others, they are those from this number on
     index_pairs: dict[str, str] = field(default_factory=dict)  # where the high word of a 32-bit number in an index register lies
     least_wide_digits: int = 5  # of a Kn string that holds a 32-bit number
+    annunciators: range = range(0)  # steps that tell of faults of the machine
     local_areas: tuple[str, ...] = ("LM", "V")  # bits and words of the unit that is executed: put aside by a call and an interrupt
     high_word_first: bool = True
     type_code: int = 0
