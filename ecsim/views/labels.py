@@ -38,10 +38,17 @@ class Labels:
             str(v.device): v.comment for v in (*(program.variables if program else {}).values(), *unit.variables.values()) if v.comment
         }
         self.locals = {str(variable.device): f"#{variable.name}" for variable in unit.variables.values()}
+        self._known: dict[str, Label] = {}  # by what was written
 
     def of(self, word: Word, place: int) -> Label:
         """The label of an operand: the name that was written, else one that the program declares for the device."""
-        written, operand = word.written[place], word.operands[place]
+        written = word.written[place]
+        label = self._known.get(written)
+        if label is None:
+            label = self._known[written] = self._label(written, word.operands[place])
+        return label
+
+    def _label(self, written: str, operand: Operand) -> Label:
         address = str(operand)
         if isinstance(operand, Device | Bits):
             if written.upper() != address:
@@ -53,6 +60,11 @@ class Labels:
         """What the program says about an instruction: the comments of its variables, then its own."""
         about = [f"{self.of(word, n)}: {self.comments[str(o)]}" for n, o in enumerate(word.operands) if str(o) in self.comments]
         return [*about, word.comment] if word.comment else about
+
+    def own(self, word: Word) -> bool:
+        """Whether an instruction has to do with what its unit alone has (V, LM)."""
+        areas = self.program.model.local_areas if self.program else ()
+        return any(isinstance(operand, Device | Bits) and operand.area in areas for operand in word.operands)
 
     def contact(self, word: Word) -> Label:
         """The label of a contact of one bit; of a bit in a word "D0.5"."""
@@ -94,14 +106,16 @@ def reader(operand: Operand, kind: DataType | None, model: Model) -> Reader | No
     """A function that reads an operand's present value from memory; None for what has no value that changes."""
     if not isinstance(operand, Device | Bits) or kind is None:
         return None
-    if operand.area in ("V", "LM"):
-        return lambda memory: None  # a subroutine's own: gone when it has returned
+    if operand.index is None and operand.area in model.local_areas:
+        return lambda memory: memory.get(operand, kind) if operand.area in memory.lists else None  # gone when its unit has ended
     if operand.index is None:
         return lambda memory: memory.get(operand, kind)
     area, count = operand.area, model.areas[operand.area].count
     length = 4 * operand.digits if isinstance(operand, Bits) else max(1, kind.words)
 
     def indexed(memory: Memory) -> int | float | None:
+        if not {area, operand.index_area} <= memory.lists.keys():
+            return None
         number = operand.number + memory.lists[operand.index_area][operand.index]
         if not 0 <= number <= count - length:
             return None

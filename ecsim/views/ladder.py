@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
-from itertools import pairwise
 
 from ..assembler.program import Network, Program, Unit
 from ..devices import Bits, Device
@@ -14,9 +12,9 @@ from ..models import Model, get_model
 from . import svg as s
 from . import symbols
 from .labels import COILS, Labels, compares
-from .ladder_live import Live, Picked
+from .ladder_live import Live
 from .ladder_text import draw
-from .layout import Layout, Placed, Size, Symbol
+from .layout import Layout, Size, Symbol
 from .lettering import cut, width
 from .rungs import Gate, Output, Rung, Word, depth, instruction_list, rung, unit_of
 
@@ -25,6 +23,7 @@ MARGIN, RAIL_STEP, RIGHT_RAIL, EDGE, PLATE = 64, 22, 944, 16, 38
 TITLE_LINE, BUS_ROW, HEAD = 18, 52, 34
 NATURAL, NARROW, WITH_NOTES, NOTES = 960, 700, 1100, 282
 CELLS = (112, 104, 96, 88, 80)  # a contact's cell: the widest where there is room, a narrower one where a panel then needs no scrolling
+KEPT = 3  # sheets of a ladder
 DEEPEST = 80  # a tree nested deeper is listed instead of drawn
 
 
@@ -48,7 +47,9 @@ class Entry:
     unit: Unit
     labels: Labels
     rung: Rung
+    words: tuple[Word, ...]
     heading: str = ""
+    drawn: bool = True  # as contacts and coils; else a row on the bus, or a list
 
 
 class Ladder:
@@ -63,7 +64,12 @@ class Ladder:
                 continue  # a password closes it (2.1.11)
             labels = Labels(unit, program)
             for place, network in enumerate(unit.networks):
-                self.entries.append(Entry(unit, labels, rung(unit, network), heading(unit) if len(units) > 1 and not place else ""))
+                tree = rung(unit, network)
+                over = heading(unit) if len(units) > 1 and not place else ""
+                self.entries.append(Entry(unit, labels, tree, tuple(tree.words), over, is_drawn(tree)))
+        self._sizes: dict[tuple[float, int], Size] = {}
+        self._layouts: dict[tuple[float, int], Layout] = {}
+        self._rights: dict[float, dict[int, float]] = {}
         self._sheets: dict[int | None, Sheet] = {}
         self._drawn: int | None = None
 
@@ -89,19 +95,46 @@ class Ladder:
     def svg(self, prefix: str = "", width: int | None = None) -> str:
         """The picture at rest, `width` px wide or as much more as the program needs; every id begins with `prefix`."""
         self._drawn = width
-        return self._sheet().picture(prefix)
+        return self.sheet(width).picture(prefix)
 
     def state(self, moment) -> dict[str, str]:
         """What changes in the picture last drawn, by "key:attribute"; `moment` is the Plc.
 
         While the Plc traces, the power of its last scan is shown; else only what contacts, coils and registers hold.
         """
-        return self._sheet().live.state(moment)
+        return self.sheet(self._drawn).state(moment)
 
-    def _sheet(self) -> Sheet:
-        if self._drawn not in self._sheets:
-            self._sheets[self._drawn] = Sheet(self, self._drawn)
-        return self._sheets[self._drawn]
+    def sheet(self, width: int | None = None) -> Sheet:
+        """The ladder laid out for a width, from which single networks can be had; the last few widths are kept."""
+        if width not in self._sheets:
+            if len(self._sheets) >= KEPT:
+                del self._sheets[next(iter(self._sheets))]
+            self._sheets[width] = Sheet(self, width)
+        return self._sheets[width]
+
+    def layout(self, entry: Entry, cell: float) -> Layout:
+        """What lays out a network of a unit with a width of cell."""
+        key = cell, id(entry.labels)
+        if key not in self._layouts:
+            self._layouts[key] = Layout(Lengths(entry.labels, cell))
+        return self._layouts[key]
+
+    def size(self, number: int, cell: float) -> Size:
+        """The least room of a network with a width of cell."""
+        if (cell, number) not in self._sizes:
+            entry = self.entries[number]
+            self._sizes[cell, number] = self.layout(entry, cell).size(entry.rung)
+        return self._sizes[cell, number]
+
+    def rail(self, number: int, cell: float) -> float:
+        """Where a network with a width of cell needs the right rail, at the least."""
+        return MARGIN + RAIL_STEP * len(railed(self.entries[number].rung)) + self.size(number, cell).width
+
+    def rights(self, cell: float) -> dict[int, float]:
+        """Where each drawn network needs the right rail."""
+        if cell not in self._rights:
+            self._rights[cell] = {number: self.rail(number, cell) for number, entry in enumerate(self.entries) if entry.drawn}
+        return self._rights[cell]
 
     def _repr_svg_(self) -> str:
         return s.standalone(self.svg())
@@ -160,36 +193,54 @@ class Lengths:
         return Size(symbols.BOX + EDGE, up, height - up, 0, symbols.BOX)
 
 
+@dataclass(frozen=True, slots=True)
+class Rail:
+    """The piece of a left rail that lies in one network.
+
+    `position` is of an instruction that is executed while the rail is live; -1 for the main one.
+    """
+
+    key: str
+    position: int
+    x: float
+    top: float
+    bottom: float
+
+
 @dataclass(slots=True)
 class Strip:
-    """One network in its place on a sheet; `placed` is None for a row on the bus and for a list."""
+    """One network in its place on a sheet."""
 
     number: int
     entry: Entry
-    words: list[Word]
     top: float
     wire: float  # the height of its first wire
     height: float
     left: float  # the rail it hangs on
-    placed: Placed | None
-    rails: tuple[tuple[str, int], ...] = field(default=())  # the regions that draw a rail of their own
+    regions: tuple[tuple[str, int], ...]  # those that draw a rail of their own
+    rails: list[Rail] = field(default_factory=list)
+
+    @property
+    def above(self) -> float:
+        """Where its room begins: with the heading over it."""
+        return self.top - (HEAD if self.entry.heading else 0)
+
+    @property
+    def bottom(self) -> float:
+        """Where its room ends."""
+        return self.top + self.height
 
 
 class Sheet:
-    """A ladder laid out for one width."""
+    """A ladder laid out for one width. Where each network lies is known at once; a network is placed and drawn when it is asked for."""
 
     def __init__(self, ladder: Ladder, asked: int | None):
         asked = asked or NATURAL
+        self.ladder = ladder
         self.model: Model = ladder.model
         self.program = ladder.program
         with_notes = asked >= WITH_NOTES
-        entries = [entry for entry in ladder.entries if is_drawn(entry.rung)]
-        for cell in CELLS if asked < NARROW else CELLS[:1]:
-            needed = self._lay_out(ladder, cell, entries)
-            if needed <= asked - EDGE:
-                break
-        else:
-            needed = self._lay_out(ladder, CELLS[1] if asked < NARROW else CELLS[0], entries)
+        self.cell, needed = self._fit(asked)
         self.right = max(min(RIGHT_RAIL, asked - NOTES) if with_notes else asked - EDGE, needed)
         self.notes = self.right + 24 if with_notes else 0
         self.width = max(asked, self.right + (NOTES if with_notes else EDGE))
@@ -197,99 +248,120 @@ class Sheet:
         top = 8.0
         for number, entry in enumerate(ladder.entries):
             self.strips.append(self._strip(number, entry, top + (HEAD if entry.heading else 0)))
-            top = self.strips[-1].top + self.strips[-1].height
+            top = self.strips[-1].bottom
         self.height = top + 8
+        self._lay_rails()
+        self._lives: dict[int, Live] = {}
 
-    def _lay_out(self, ladder: Ladder, cell: float, entries: list[Entry]) -> float:
-        """Take a width of cell; where the right rail must then be."""
-        self.layouts = {id(entry.labels): Layout(Lengths(entry.labels, cell)) for entry in ladder.entries}
-        left = (MARGIN + RAIL_STEP * len(railed(entry.rung)) for entry in entries)
-        sizes = (self.layouts[id(entry.labels)].size(entry.rung) for entry in entries)
-        return max((x + size.width for x, size in zip(left, sizes, strict=True)), default=0)
+    def _fit(self, asked: int) -> tuple[float, float]:
+        """The widest cell with which every network has room, and where the right rail must then be.
+
+        A network that has room with a wide cell has it with a narrower one, too.
+        """
+        cells = CELLS if asked < NARROW else CELLS[:1]
+        rights = self.ladder.rights(cells[0])
+        needed = max(rights.values(), default=0)
+        if needed <= asked - EDGE:
+            return cells[0], needed
+        wide = sorted((number for number, right in rights.items() if right > asked - EDGE), key=rights.__getitem__, reverse=True)
+        for cell in cells[1:]:
+            if all(self.ladder.rail(number, cell) <= asked - EDGE for number in wide):
+                return cell, asked - EDGE
+        cell = CELLS[1] if asked < NARROW else CELLS[0]
+        return cell, max(self.ladder.rail(number, cell) for number in wide)
 
     def _strip(self, number: int, entry: Entry, top: float) -> Strip:
-        rung, words = entry.rung, entry.rung.words
-        titles = rung.title.count("\n") + 1 if rung.title else 0
+        rung = entry.rung
+        title = entry.words[0].title
+        titles = title.count("\n") + 1 if title else 0
         lines = 14 + TITLE_LINE * titles - 10 if titles else 0
-        rails = railed(rung)
-        left = MARGIN + RAIL_STEP * len(rails)
-        placed = None
-        if is_drawn(rung):
-            layout = self.layouts[id(entry.labels)]
-            size = layout.size(rung)
+        regions = railed(rung)
+        if entry.drawn:
+            size = self.ladder.size(number, self.cell)
             wire = max(lines + size.up + 8, 56)
             height = wire + size.down + 14
-            placed = layout.place(rung, self.right - left)
         elif is_bus(rung):
             wire, height = lines + 28, lines + BUS_ROW
         else:
             wire = lines + 34
-            height = lines + 36 + symbols.LINE * len(words)
+            height = lines + 36 + symbols.LINE * len(entry.words)
         if self.notes:
             height = max(height, 10 + TITLE_LINE * len(remarks(entry)))
-        return Strip(number, entry, words, top, top + wire, height, left, placed, rails)
+        return Strip(number, entry, top, top + wire, height, MARGIN + RAIL_STEP * len(regions), regions)
 
-    @cached_property
-    def rails(self) -> list[tuple[str, int, float, float, float]]:
-        """Each left rail: its key, the position of an instruction that is executed while it is live (-1: the main one), x and its ends."""
-        found = [(f"rail{number}", -1, float(MARGIN), y1, y2) for number, (y1, y2) in enumerate(self.spans())]
-        opened: list[tuple[int, float]] = []  # first position, top
-        for before, strip, after in zip([None, *self.strips], self.strips, [*self.strips[1:], None], strict=False):
-            while len(opened) < len(strip.rails):
+    def _lay_rails(self) -> None:
+        """Give each strip its pieces of the left rails: the main one, and those that MC and STL open inside it."""
+        count = 0
+        opened: list[tuple[int, int, int, float]] = []  # number, first position, first strip, where it begins
+        for number, strip in enumerate(self.strips):
+            if strip.entry.heading or number == 0:
+                main, count = count, count + 1
+            strip.rails.append(Rail(f"rail{main}.{number}", -1, float(MARGIN), strip.top, strip.bottom))
+            while len(opened) < len(strip.regions):
                 # A rail begins beside the row that opens it, where that is shown.
-                opened.append((strip.words[0].position, before.wire if before and not strip.entry.heading else strip.top))
-            following = after.rails if after and not after.entry.heading else ()
+                beside = number > 0 and not strip.entry.heading
+                begin = self.strips[number - 1].wire if beside else strip.top
+                opened.append((count, strip.entry.words[0].position, number - beside, begin))
+                count += 1
+            after = self.strips[number + 1] if number + 1 < len(self.strips) else None
+            following = after.regions if after and not after.entry.heading else ()
             fresh = after is not None and opens(after.entry.rung)
-            while opened and (strip.rails[: len(opened)] != following[: len(opened)] or (fresh and len(opened) > len(following))):
-                first, top = opened.pop()
-                found.append((f"rail{len(found)}", first, float(MARGIN + RAIL_STEP * (len(opened) + 1)), top, strip.top + strip.height - 4))
-        return found
+            while opened and (strip.regions[: len(opened)] != following[: len(opened)] or (fresh and len(opened) > len(following))):
+                rail, first, begins, top = opened.pop()
+                x = float(MARGIN + RAIL_STEP * (len(opened) + 1))
+                for piece in self.strips[begins : number + 1]:
+                    bottom = piece.bottom - 4 if piece is strip else piece.bottom
+                    piece.rails.append(Rail(f"rail{rail}.{piece.number}", first, x, max(top, piece.top), bottom))
 
-    def spans(self) -> Iterator[tuple[float, float]]:
-        """From where to where the main rails of each unit go."""
-        starts = [n for n, strip in enumerate(self.strips) if strip.entry.heading or n == 0]
-        for start, end in pairwise([*starts, len(self.strips)]):
-            yield self.strips[start].top, self.strips[end - 1].top + self.strips[end - 1].height
+    def live(self, number: int) -> Live:
+        """What changes in a network."""
+        if number not in self._lives:
+            strip = self.strips[number]
+            layout = self.ladder.layout(strip.entry, self.cell)
+            placed = layout.place(strip.entry.rung, self.right - strip.left) if strip.entry.drawn else None
+            self._lives[number] = Live(strip, placed, self.model)
+        return self._lives[number]
 
-    @cached_property
-    def live(self) -> Picked:
-        """What changes in the picture."""
-        return Picked(
-            [Live(strip, self.model) for strip in self.strips], [(key, position) for key, position, *_ in self.rails], self.program
-        )
+    def state(self, moment, numbers: Iterable[int] | None = None) -> dict[str, str]:
+        """What changes in the networks of some numbers, or in all, as a Plc has it now."""
+        memory, running = moment.memory, moment.running
+        same = self.program is None or moment.program is self.program
+        trace = moment.trace if running and moment.tracing and same else None
+        forced = moment.forced
+        entries: dict[str, str] = {}
+        for number in range(len(self.strips)) if numbers is None else numbers:
+            self.live(number).put(entries, memory, trace, running, forced)
+        return entries
 
     # -- the picture --------------------------------------------------------------------------------------------
 
     def picture(self, prefix: str) -> str:
-        """The root `<svg>` at rest."""
-        parts = [symbols.definitions(prefix), *self._frame(prefix), *(self._draw(strip, prefix) for strip in self.strips)]
+        """The root `<svg>` at rest with all networks."""
+        return self.shell(prefix, "".join(self.network(number, prefix) for number in range(len(self.strips))))
+
+    def shell(self, prefix: str, content: str = "") -> str:
+        """The root `<svg>` in its whole size, with the networks that are given."""
         units = ", ".join(dict.fromkeys(strip.entry.unit.name for strip in self.strips))
         label = f"Ladder of {units}, {len(self.strips)} network{'s' if len(self.strips) != 1 else ''}"
         size = {"width": self.width, "height": self.height, "viewBox": f"0 0 {s.number(self.width)} {s.number(self.height)}"}
-        return s.element(
-            "svg", "".join(parts), xmlns="http://www.w3.org/2000/svg", class_="ec ladder", role="img", aria_label=label, **size
-        )
+        content = symbols.definitions(prefix) + content
+        return s.element("svg", content, xmlns="http://www.w3.org/2000/svg", class_="ec ladder", role="img", aria_label=label, **size)
 
-    def _frame(self, prefix: str) -> Iterator[str]:
-        for strip in self.strips[1:]:
-            if not strip.entry.heading:
-                yield f'<path class="hair" d="M0 {s.number(strip.top + 0.5)}H{s.number(self.width)}"/>'
-        for y1, y2 in self.spans():
-            yield f'<path class="rail-right" d="M{s.number(self.right)} {s.number(y1)}V{s.number(y2)}"/>'
-        for key, _, x, y1, y2 in self.rails:
-            yield s.element("path", None, id=f"{prefix}{key}", class_="rail", d=f"M{s.number(x)} {s.number(y1)}V{s.number(y2)}")
-
-    def _draw(self, strip: Strip, prefix: str) -> str:
+    def network(self, number: int, prefix: str) -> str:
+        """One network at rest, in its place on the sheet."""
+        strip = self.strips[number]
         rung, top = strip.entry.rung, strip.top
         parts = [s.text(18, top - 12, strip.entry.heading, "unit-title")] if strip.entry.heading else []
+        parts += self._frame(strip, prefix)
         parts.append(s.text(18, top + 14, str(rung.number + 1), "net-no"))
         for line, words in enumerate(rung.title.split("\n") if rung.title else []):
             parts.append(s.text(strip.left + 16, top + 14 + TITLE_LINE * line, words, "note" if line else "net-title"))
-        parts.append(s.text(MARGIN - 12, strip.wire + 4, str(strip.words[0].step), "step-no end"))
+        parts.append(s.text(MARGIN - 12, strip.wire + 4, str(strip.entry.words[0].step), "step-no end"))
         parts.append(self._region(strip, prefix))
-        if strip.placed:
-            parts += [self._symbol(strip, symbol, prefix) for symbol in strip.placed.symbols]
-            parts += self._wires(strip, prefix)
+        live = self.live(number)
+        if live.placed:
+            parts += [self._symbol(strip, symbol, prefix) for symbol in live.placed.symbols]
+            parts += self._wires(live, prefix)
         else:
             parts += self._bus(strip, prefix) if is_bus(rung) else self._list(strip)
         if self.notes:
@@ -297,6 +369,15 @@ class Sheet:
             for line, words in enumerate(remarks(strip.entry)):
                 parts.append(s.text(self.notes, top + 14 + TITLE_LINE * line, cut(words, room), "note" if line else "note note-1"))
         return s.element("g", "".join(parts), class_="net", data_network=str(rung.number), data_unit=strip.entry.unit.name)
+
+    def _frame(self, strip: Strip, prefix: str) -> Iterator[str]:
+        """The line above a network, and its pieces of the rails."""
+        if strip.number and not strip.entry.heading:
+            yield f'<path class="hair" d="M0 {s.number(strip.top + 0.5)}H{s.number(self.width)}"/>'
+        yield f'<path class="rail-right" d="M{s.number(self.right)} {s.number(strip.top)}V{s.number(strip.bottom)}"/>'
+        for rail in strip.rails:
+            path = f"M{s.number(rail.x)} {s.number(rail.top)}V{s.number(rail.bottom)}"
+            yield s.element("path", None, id=prefix + rail.key, class_="rail", d=path)
 
     def _region(self, strip: Strip, prefix: str) -> str:
         """What encloses the network, in the margin: a step as its box, MC and FOR as a word."""
@@ -309,12 +390,11 @@ class Sheet:
         box = s.element("rect", None, class_="box", x=12, y=strip.top + 21, width=40, height=20, rx=2)
         return s.element("g", box + s.text(32, strip.top + 35, f"S{number}", "step-id small"), id=f"{prefix}m{strip.number}", class_="step")
 
-    def _wires(self, strip: Strip, prefix: str) -> Iterator[str]:
+    def _wires(self, live: Live, prefix: str) -> Iterator[str]:
         """Two paths for all wires and two for all dots, dead and live."""
-        resting = self.live.strips[strip.number].rest
         for letter, class_ in (("w", "wire"), ("o", "node"), ("p", "wire on"), ("q", "node on")):
-            key = f"{letter}{strip.number}"
-            yield s.element("path", None, id=prefix + key, class_=class_, d=resting[f"{key}:d"])
+            key = f"{letter}{live.number}"
+            yield s.element("path", None, id=prefix + key, class_=class_, d=live.rest[f"{key}:d"])
 
     def _symbol(self, strip: Strip, symbol: Symbol, prefix: str) -> str:
         word, labels = symbol.item.word, strip.entry.labels
@@ -346,7 +426,7 @@ class Sheet:
         yield s.element(
             "path", None, id=f"{prefix}x{strip.number}", class_="wire", d=f"M{s.number(strip.left)} {s.number(y)}H{s.number(x)}"
         )
-        for word in strip.words:
+        for word in strip.entry.words:
             label = strip.entry.labels.of(word, 0) if word.operands else None
             if is_step(word):
                 letters, class_, size = label.address, "step", max(58, width(label.address, 13, True) + 16)
@@ -366,9 +446,9 @@ class Sheet:
 
     def _list(self, strip: Strip) -> Iterator[str]:
         """A rung that is nested too deep to be drawn: its instructions."""
-        height = 12 + symbols.LINE * len(strip.words)
+        height = 12 + symbols.LINE * len(strip.entry.words)
         yield s.element("rect", None, class_="frame", x=strip.left + 16, y=strip.wire - 18, width=240, height=height, rx=2)
-        for line, word in enumerate(strip.words):
+        for line, word in enumerate(strip.entry.words):
             yield s.text(strip.left + 28, strip.wire + symbols.LINE * line, str(word), "op")
 
 
@@ -377,7 +457,7 @@ class Sheet:
 
 def is_bus(rung: Rung) -> bool:
     """Whether it stands on the left bus without a flow: STL, RET, MCR, NEXT, LBL."""
-    return TABLE[rung.words[0].mnemonic].bus
+    return TABLE[rung.head.mnemonic].bus
 
 
 def is_drawn(rung: Rung) -> bool:
@@ -392,7 +472,7 @@ def is_step(word: Word) -> bool:
 
 def opens(rung: Rung) -> bool:
     """Whether it is the row that opens a step."""
-    return is_step(rung.words[0])
+    return is_step(rung.head)
 
 
 def railed(rung: Rung) -> tuple[tuple[str, int], ...]:
@@ -403,7 +483,7 @@ def railed(rung: Rung) -> tuple[tuple[str, int], ...]:
 def remarks(entry: Entry) -> list[str]:
     """The comments of a network's instructions, each behind what it speaks of."""
     found = []
-    for word in entry.rung.words:
+    for word in entry.words:
         if word.comment:
             about = str(entry.labels.of(word, 0)) if word.operands else word.mnemonic
             found.append(f"{about}: {word.comment}")

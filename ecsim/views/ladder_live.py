@@ -1,21 +1,23 @@
 """What changes in a ladder from scan to scan: the power of a trace, the states of contacts and coils, values, forced marks.
 
 Everything that a network can look like is computed once and remembered by what the scan recorded of it, so that a frame of
-a hundred rungs costs well under a millisecond.
+a hundred rungs costs well under a millisecond. A network knows nothing of the others: of a large program only those are asked
+that are looked at.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from itertools import chain
+import copy
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from ..assembler.program import Program
 from ..devices import Device
+from ..engines import Trace
 from ..instructions import TABLE
 from ..memory import Memory
 from ..models import Model
 from .labels import COILS, compares, constant_value, figure, operand_type, reader
+from .layout import Placed
 from .rungs import Contact, Output, Word
 from .svg import number
 from .symbols import BOX, PAD, counts, forcible, spoken
@@ -29,35 +31,41 @@ REMEMBERED = 500  # looks of one network
 class Live:
     """One network: what it may look like, and what is read for it."""
 
-    def __init__(self, strip: Strip, model: Model):
-        self.number, self.placed, self.labels = strip.number, strip.placed, strip.entry.labels
-        self.first, self.last = strip.words[0].position, strip.words[-1].position + 1
-        self.words = strip.words
+    def __init__(self, strip: Strip, placed: Placed | None, model: Model):
+        self.number, self.placed, self.labels, self.rails = strip.number, placed, strip.entry.labels, strip.rails
+        self.words = strip.entry.words
+        self.first, self.last = self.words[0].position, self.words[-1].position + 1
         self.seen: dict[tuple, dict[str, str]] = {}
         self.bits: list[tuple[str, int]] = []  # what coils and steps hold, as list and number
         self.bit_of: dict[int, int] = {}  # position -> its place in `bits`
         self.region_bit = -1
         self.values: list[tuple] = []
         self.contacts: list[tuple] = []
-        for word in strip.words:
+        for word in self.words:
             self._gather(word, model)
+        unit = strip.entry.unit
+        # What a subroutine or interrupt program has of its own is gone when it has ended; the trace kept it.
+        self.owner = unit.name if unit.kind != "MAIN" and any(map(self.labels.own, self.words)) else ""
         region = strip.entry.rung.region
         if region and region[-1][0] == "STL":
             self.region_bit = len(self.bits)
             self.bits.append(("S", region[-1][1]))
-        if self.placed:
+        if placed:
             self._trace(strip)
         self.rest = self.look(None, (None,) * (self.last - self.first), (False,) * len(self.bits))
+        self.rest |= {f"{rail.key}:class": "rail" for rail in self.rails}
         for key, _, _, full in self.values:
             self.rest[f"{key}:text"] = ""
             if full:
                 self.rest[f"r{key[1:].partition('.')[0]}:width"] = "0"
             if key[0] == "b":
                 self.rest[f"{key}:class"] = "el-bit"
-        self.forcible = [word for word in strip.words if self.placed and forcible(word)]
-        for word in self.forcible:
+        self.forcible: dict[str, list[int]] = {}  # device -> the positions where it stands
+        for word in self.words if placed else ():
             p = word.position
-            self.rest |= {f"f{p}:class": "forced", f"h{p}:class": "forced", f"g{p}:text": "F"}
+            for device in forcible(word):
+                self.forcible.setdefault(device, []).append(p)
+                self.rest |= {f"f{p}:class": "forced", f"h{p}:class": "forced", f"g{p}:text": "F"}
 
     def _gather(self, word: Word, model: Model) -> None:
         """What is read for one instruction."""
@@ -166,56 +174,44 @@ class Live:
             states[place] = None if None in values else bool(function(*values))
         return tuple(states)
 
-    def put(self, entries: dict[str, str], memory: Memory, trace) -> None:
+    def put(self, entries: dict[str, str], memory: Memory, trace: Trace | None, running: bool, forced: Mapping[str, int | float]) -> None:
         """Enter what this network looks like now."""
+        if self.owner:
+            memory = own_memory(memory, trace, self.owner)
         lists = memory.lists
         if trace is None:
             flow, closed = None, self.closed_now(memory)
         else:
             flow, closed = tuple(trace.flow[self.first : self.last]), tuple(trace.closed[self.first : self.last])
-        bits = tuple([lists[area][number] for area, number in self.bits])
+        bits = tuple([area in lists and lists[area][number] for area, number in self.bits])
         look = self.seen.get((flow, closed, bits))
         if look is None:
             if len(self.seen) >= REMEMBERED:
                 self.seen.clear()
             look = self.seen[flow, closed, bits] = self.look(flow, closed, bits)
+        entries.update(self.rest)
         entries.update(look)
+        for rail in self.rails:
+            if running if rail.position < 0 else trace is not None and trace.flow[rail.position] is not None:
+                entries[f"{rail.key}:class"] = "rail on"
         for key, read, preset, full in self.values:
             value = read(memory)
             entries[f"{key}:text"] = figure(value)
             if full:
                 goal = preset(memory) if callable(preset) else preset
-                share = min(1.0, max(0.0, value / goal)) if goal else 0.0
+                share = min(1.0, max(0.0, value / goal)) if value is not None and goal else 0.0
                 entries[f"r{key[1:-2]}:width"] = number(full * share)
             elif key[0] == "b" and value:
                 entries[f"{key}:class"] = "el-bit on"
-
-
-class Picked:
-    """All that changes on a sheet."""
-
-    def __init__(self, strips: list[Live], rails: list[tuple[str, int]], program: Program | None):
-        self.strips, self.rails, self.program = strips, rails, program
-        self.rest = dict(chain.from_iterable(strip.rest.items() for strip in strips)) | {f"{key}:class": "rail" for key, _ in rails}
-        self.places: dict[str, list[int]] = {}
-        for strip in strips:
-            for word in strip.forcible:
-                for device in forcible(word):
-                    self.places.setdefault(device, []).append(word.position)
-
-    def state(self, plc) -> dict[str, str]:
-        """Every entry as a Plc has it now."""
-        memory = plc.memory
-        same = self.program is None or plc.program is self.program
-        trace = plc.trace if plc.running and plc.tracing and same else None
-        entries = self.rest.copy()
-        for key, position in self.rails:
-            if plc.running if position < 0 else trace is not None and trace.flow[position] is not None:
-                entries[f"{key}:class"] = "rail on"
-        for strip in self.strips:
-            strip.put(entries, memory, trace)
-        for device, value in plc.forced.items():
-            for position in self.places.get(device, ()):
+        for device in forced.keys() & self.forcible.keys():
+            for position in self.forcible[device]:
                 entries[f"f{position}:class"] = entries[f"h{position}:class"] = "forced on"
-                entries[f"g{position}:text"] = f"F {figure(value)}"
-        return entries
+                entries[f"g{position}:text"] = f"F {figure(forced[device])}"
+
+
+def own_memory(memory: Memory, trace: Trace | None, unit: str) -> Memory:
+    """The memory with a unit's own V and LM at the end of its last call in the scan; without them where no call was recorded."""
+    own = copy.copy(memory)
+    kept = trace.locals.get(unit, {}) if trace is not None else {}
+    own.lists = {name: values for name, values in memory.lists.items() if name not in memory.model.local_areas} | kept
+    return own

@@ -103,9 +103,14 @@ class Rung:
     region: tuple[tuple[str, int], ...] = ()
 
     @property
+    def head(self) -> Word:
+        """Its first instruction."""
+        return next(words(self.flow))
+
+    @property
     def title(self) -> str:
         """The comment above it."""
-        return next(words(self.flow)).title
+        return self.head.title
 
     @property
     def words(self) -> list[Word]:

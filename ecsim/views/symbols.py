@@ -235,7 +235,9 @@ def spoken(word: Word, labels: Labels) -> str:
 
 def tip(word: Word, labels: Labels) -> str:
     """What the pointer learns about an element: itself in words, what it does, its comment, its step."""
+    own = "" if labels.unit.kind == "MAIN" or not labels.own(word) else labels.unit.name
     lines = [spoken(word, labels), TABLE[word.mnemonic].title, *labels.comment(word), f"step {word.step}" if word.step >= 0 else ""]
+    lines.append(f"a value of {own}'s own is there only after a call in the scan that is shown" if own else "")
     return s.tip("\n".join(filter(None, lines)))
 
 

@@ -290,7 +290,7 @@ def test_a_one_scan_pulse_is_seen(plc):
 
 def test_wires_that_carry_the_same_are_one_path(plc):
     picture, state = show(plc, "LD X0\nOUT Y0")
-    strip = picture._sheet().strips[0]
+    strip = picture.sheet().strips[0]
     first, second, third = "M64 {0}H124", "M140 {0}H887", "M913 {0}H944"
     y = f"{strip.wire:g}"
     assert (state["w0:d"], state["p0:d"]) == ((second + third).format(y), first.format(y))
@@ -313,18 +313,18 @@ def test_values_stand_under_contacts_and_in_boxes(plc):
 def test_what_was_not_executed_carries_no_power(plc):
     _, state = show(plc, "LD X0\nMC 0\nLD SM0\nOUT Y0\nMCR 0\nLD SM0\nOUT Y1")
     assert (state["e2:class"], state["e3:class"], state["e6:class"]) == ("contact open", "coil open", "coil flow")
-    assert (state["rail0:class"], state["rail1:class"]) == ("rail on", "rail")
+    assert (state["rail0.1:class"], state["rail1.1:class"]) == ("rail on", "rail")
 
 
 def test_an_active_step_lights_its_plate_its_mark_and_its_rail(plc):
     text = "LD SM1\nSET S0\nSTL S0\nLD X0\nSET S20\nSTL S20\nOUT Y0\nRET"
     picture, state = show(plc, text, scans=2)
     assert (state["e2:class"], state["e5:class"]) == ("step active", "step")
-    assert (state["m2:class"], state["rail1:class"], state["rail2:class"]) == ("step active", "rail on", "rail")
+    assert (state["m2:class"], state["rail1.2:class"], state["rail2.4:class"]) == ("step active", "rail on", "rail")
     plc["X0"] = 1
     plc.scan(2)
     state = picture.state(plc)
-    assert (state["e2:class"], state["e5:class"], state["e6:class"], state["rail2:class"]) == (
+    assert (state["e2:class"], state["e5:class"], state["e6:class"], state["rail2.4:class"]) == (
         "step",
         "step active",
         "coil flow",
@@ -367,7 +367,7 @@ def test_a_stopped_plc_is_a_grey_page(plc):
     picture, _ = show(plc, "LD SM0\nOUT Y0")
     plc.stop()
     state = picture.state(plc)
-    assert (state["rail0:class"], state["p0:d"], state["e1:class"]) == ("rail", "", "coil open")
+    assert (state["rail0.0:class"], state["p0:d"], state["e1:class"]) == ("rail", "", "coil open")
 
 
 def test_an_indexed_register_is_read_where_it_points(plc):
@@ -389,3 +389,82 @@ def test_nothing_of_a_name_or_comment_becomes_markup():
         elements(picture.svg(width=width))
     assert "<script>" not in picture.svg()
     assert "&lt;b&gt;&amp;amp;" in picture.svg()
+
+
+# -- of a large program only what is looked at ---------------------------------------------------------------------
+
+
+def test_the_networks_one_by_one_are_the_whole_picture(plc):
+    picture, state = show(plc, "LD X0\nMC 0\nLD SM0\nOUT Y0\nMCR 0\nLD SM0\nOUT Y1", scans=2)
+    sheet = picture.sheet()
+    parts = [sheet.network(number, "a-") for number in range(len(picture))]
+    assert sheet.shell("a-", "".join(parts)) == picture.svg("a-")
+    each = [sheet.state(plc, [number]) for number in range(len(picture))]
+    assert {key: value for entries in each for key, value in entries.items()} == state
+    assert sum(map(len, each)) == len(state)
+
+
+def test_the_places_of_all_networks_are_known_before_one_is_drawn():
+    sheet = ladder(assemble("\n".join(f"LD X{n % 8}\nOUT M{n}" for n in range(500)), "EC20")).sheet(640)
+    assert [strip.above for strip in sheet.strips[1:]] == [strip.bottom for strip in sheet.strips[:-1]]
+    assert sheet.strips[-1].bottom < sheet.height < sheet.strips[-1].bottom + 20
+    assert sheet._lives == {}
+
+
+def test_a_narrow_sheet_takes_the_widest_cells_that_fit():
+    program = assemble("LD X0\nAND X1\nAND X2\nOUT Y0\nLD X3\nOUT Y1", "EC20")
+    cells = [ladder(program).sheet(width).cell for width in (600, 520, 500, 470, 440, 400, 100)]
+    # 64 px to the rail, 12 to the first cell, three cells, 88 for the coil, 16 to the edge
+    assert cells == [112, 112, 104, 96, 80, 104, 104]
+
+
+CALLED = """
+PROGRAM MAIN
+LD X0
+CALL ONE D0 D1
+LD X0
+CALL ONE 40 D2
+END_PROGRAM
+SUBROUTINE ONE
+VAR_INPUT
+A : INT
+END_VAR
+VAR_OUTPUT
+B : INT
+END_VAR
+VAR_TEMP
+L : BOOL
+END_VAR
+LD SM0
+ADD #A 5 #B
+OUT #L
+LD #L
+SET M0
+END_SUBROUTINE
+"""
+
+
+def test_what_a_subroutine_has_of_its_own_is_shown_as_its_last_call_left_it(plc):
+    """3.1.12: V and LM are gone when it has returned; the last of the two calls had 40."""
+    plc.load(CALLED)
+    plc.tracing = True
+    plc.run()
+    plc.set({"X0": 1})
+    plc.scan(2)
+    picture = ladder(plc.program)
+    position = next(i.position for i in plc.program.instructions if i.mnemonic == "ADD")
+    state = picture.state(plc)
+    assert [state[f"v{position}.{place}:text"] for place in (0, 2)] == ["40", "45"]
+    assert (state[f"e{position + 1}:class"], state[f"e{position + 2}:class"]) == ("coil flow", "contact flow")
+
+
+def test_a_subroutine_that_was_not_called_has_no_values_and_its_tip_says_why(plc):
+    plc.load(CALLED)
+    plc.tracing = True
+    plc.run()
+    plc.scan(2)
+    picture = ladder(plc.program)
+    position = next(i.position for i in plc.program.instructions if i.mnemonic == "ADD")
+    assert picture.state(plc)[f"v{position}.0:text"] == "–"
+    assert picture.state(plc)[f"e{position + 1}:class"] == "coil open"
+    assert "a value of ONE's own is there only after a call in the scan that is shown" in picture.svg()
