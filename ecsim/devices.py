@@ -145,6 +145,7 @@ class Syntax:
     index_areas: frozenset[str] = frozenset("Z")
     constant: Callable[[str], Constant | None] = ec_constant
     pointers: dict[str, str] = field(default_factory=dict)  # kind of operand -> the letter of its pointers: LABEL -> P
+    end_label: int | None = None  # the label that stands for the end of the program
     indexed_constants: bool = False
     _known: dict[str, Operand] = field(default_factory=dict, compare=False, repr=False)
 

@@ -31,6 +31,7 @@ from .hardware.rtc import RealTimeClock
 from .hardware.serial import Port
 from .hardware.servo import ServoReader
 from .hardware.signals import PARTS, Signal, Train, bouncing, changes, quadrature
+from .hardware.steps import Steps
 from .hardware.supply import Supply
 from .hardware.timers import Timers
 from .hardware.unit import Unit
@@ -106,6 +107,7 @@ class Plc(Programming, States):
         ]
         self.units |= {port.name: port for port in self.ports}
         self.timers = Timers(self.memory, self.clock)
+        self.steps = Steps(self.memory) if self.model.overlap else None
         self.clocks = Clocks(self.memory)
         self.running = False
         self.scans = 0
@@ -136,6 +138,7 @@ class Plc(Programming, States):
             "spend": self._spend,
             "SPENT": self._spent,
             "HELD": self._transitions,
+            "ENDING": self.steps.ending if self.steps else set(),
             "release": self.release,
             "placed": self.memory.placed,
             "machine": self,
@@ -311,6 +314,8 @@ class Plc(Programming, States):
         try:
             if self._run_program():
                 self.stop()
+            if self.steps:
+                self.steps.end()
             if spent[0] > self._limit_ns:
                 raise Overrun
         except Overrun:

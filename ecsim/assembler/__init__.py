@@ -4,11 +4,11 @@ from collections.abc import Mapping
 from dataclasses import replace
 from difflib import get_close_matches
 
-from ..devices import Bits, Constant, Device, Name
+from ..devices import Bits, Constant, Device, Name, Pointer
 from ..errors import ProgramError
 from ..instructions import TABLE, Definition
 from ..instructions.signature import OperandSpec, parse_signature
-from ..instructions.spelling import instructions_of, pulse_forms_of
+from ..instructions.spelling import instructions_of, pulse_forms_of, section_of
 from ..models import By, Model, get_model
 from ..values import BOOL, TYPES
 from .inputs import check_inputs
@@ -28,6 +28,8 @@ FOREIGN = {
     "CLOSED": "a password closes this unit, and what stands for its text is spoilt; upload it again",
 }  # fmt: skip
 
+_DEFINE = "define it between SUBROUTINE NAME and END_SUBROUTINE"
+
 __all__ = ["Instruction", "Network", "Program", "Region", "Unit", "Variable", "assemble"]
 
 
@@ -36,12 +38,14 @@ def assemble(text: str | Mapping[str, str], model: str | Model, name: str = "") 
 
     Messages name the file and its own line; for a text alone the file is `name`.
     """
-    return _Assembler(read(text, name), get_model(model)).program()
+    model = get_model(model)
+    return _Assembler(read(text, name, model.syntax), model).program()
 
 
 class _Assembler:
     def __init__(self, source: Source, model: Model):
         self.source, self.model = source, model
+        source.section = model.section
         self.parameters: dict[tuple[str, str, str], OperandSpec] = {}  # of CALL, by role, type and name
         self.choices = {spelled: meant for spelled, meant in model.spelling.items() if isinstance(meant, By)}
         rising = pulse_forms_of(model)
@@ -69,7 +73,7 @@ class _Assembler:
                     unit.instructions.append(instruction)
         self._raise()  # structure is looked at only where every word was understood
         for unit in self.units:
-            find_structure(unit, self.model.limits, self.model.initial_steps, self._report_instruction, self.source.where)
+            find_structure(unit, self.model, self._report_instruction, self.source.where)
         self._calls()
         check_inputs(self.units, self.model, self.source.report, self.source.where)
         self._count_instructions()
@@ -247,7 +251,8 @@ class _Assembler:
 
     def _definition(self, statement: Statement, unit: Unit) -> Definition | None:
         """The row that a statement's name stands for, with its first operand where that decides."""
-        choice = self.choices.get(statement.mnemonic)
+        name = statement.mnemonic
+        choice = self.choices.get(name.removesuffix(self.model.pulse_suffix) if name in self.at_rise else name)
         if choice is None:
             return self.definitions.get(statement.mnemonic)
         for word in statement.operands:
@@ -255,7 +260,9 @@ class _Assembler:
                 operand = self.resolver.resolve(word, unit.variables)
             except Refused:
                 operand = None  # it is told when the operands are held against the usual row
-            if isinstance(operand, Device | Bits):
+            if isinstance(operand, Pointer):
+                choice = choice.of(operand.letter, operand.value)
+            elif isinstance(operand, Device | Bits):
                 choice = choice.of(f"Kn{operand.area}" if isinstance(operand, Bits) else operand.area, operand.number)
             else:
                 choice = choice.usual
@@ -277,14 +284,15 @@ class _Assembler:
 
     def _operands(self, definition: Definition, statement: Statement, unit: Unit):
         specs, words = definition.operands, statement.operands
+        section = section_of(self.model, statement.mnemonic, definition)
         if len(specs) != len(words):
             names = " ".join(spec.name for spec in specs)
-            wanted = f"{definition.mnemonic} takes {len(specs)} operand{'s' if len(specs) != 1 else ''}" + (f" ({names})" if specs else "")
+            wanted = f"{statement.mnemonic} takes {len(specs)} operand{'s' if len(specs) != 1 else ''}" + (f" ({names})" if specs else "")
             self.source.report(
                 statement.line,
                 f"{wanted}, found {len(words)}",
                 self._too_many(definition, words),
-                definition.section,
+                section,
                 word=min(len(words), len(specs) + 1),
             )
             return None
@@ -293,13 +301,13 @@ class _Assembler:
             try:
                 operands.append(self.resolver.operand(spec, word, unit.variables))
             except Refused as refused:
-                self.source.report(statement.line, refused.message, refused.hint, refused.section or definition.section, word=place)
+                self.source.report(statement.line, refused.message, refused.hint, refused.section or section, word=place)
         if len(operands) < len(specs) or not self._spans_fit(definition, operands, statement):
             return None
         if definition.check:
             wrong = definition.check(*(operand.value if isinstance(operand, Constant) else operand for operand in operands))
             if wrong:
-                self.source.report(statement.line, wrong, "", definition.section)
+                self.source.report(statement.line, wrong, "", section)
                 return None
         return tuple(operands)
 
@@ -338,7 +346,8 @@ class _Assembler:
         callee = next((u for u in self.units if u.kind == "SUBROUTINE" and u.name.upper() == name.upper()), None)
         if callee is None:
             known = ", ".join(u.name for u in self.units if u.kind == "SUBROUTINE")
-            hint = f"there is {known}" if known else "define it between SUBROUTINE NAME and END_SUBROUTINE"
+            define = "begin it with its label behind FEND, SRET ends it" if self.model.syntax.pointers else _DEFINE
+            hint = f"there is {known}" if known else define
             message = f"there is no subroutine {shown(name)}" if name else "CALL names no subroutine"
             self.source.report(statement.line, message, hint, definition.section, word=min(len(words), 1))
             return None

@@ -2,7 +2,7 @@
 
 from difflib import get_close_matches
 
-from ..devices import Bits, Constant, Device, Name, Operand, OperandError, Text, number_text
+from ..devices import Bits, Constant, Device, IndexedConstant, Name, Operand, OperandError, Pointer, Text, number_text
 from ..instructions.signature import OperandSpec
 from ..models import Model
 from ..values import REAL, REAL_MAX, wrap
@@ -104,6 +104,11 @@ class Resolver:
         """Hold an operand against its row: kind of device, type, range, index, whether it may be written."""
         if isinstance(operand, Constant):
             self._constant(spec, operand, text)
+        elif isinstance(operand, IndexedConstant):
+            self._constant(spec, Constant(operand.value, operand.text), text)
+            if not spec.plain or spec.areas == {"const"}:
+                raise Refused(f"{shown(text)}: {spec.name} cannot be indexed", "write the number itself", "3.2.2")
+            self._index_register(operand)
         elif isinstance(operand, Bits):
             self._area(spec, f"Kn{operand.area}", text)
             self._digits(spec, operand, text)
@@ -159,9 +164,13 @@ class Resolver:
             what = "is read only" if spec.written and area in ("KnX", "X") else f"cannot be {spec.name}"
             raise Refused(f"{shown(text)} {what}", f"{spec.name} ({spec.type.name}) may be {self._allowed(spec)}")
 
-    @staticmethod
-    def _allowed(spec: OperandSpec) -> str:
-        words = ["a constant" if area == "const" else area for area in spec.order]
+    def _allowed(self, spec: OperandSpec) -> str:
+        """The areas of an operand that the model has, in words."""
+        pointer = self.model.syntax.pointers.get(spec.kind)
+        if pointer:
+            return f"a pointer, {pointer}{spec.range[0] if spec.range else 1}"
+        words = ["a constant" if area == "const" else area for area in self._areas(spec)]
+        words = [word for word in words if word == "a constant" or word.removeprefix("Kn") in self.model.areas]
         return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} or {words[-1]}"
 
     def _constant(self, spec: OperandSpec, constant: Constant, text: str) -> None:
@@ -170,6 +179,9 @@ class Resolver:
                 f"the constant {shown(text)} cannot be {spec.name}", f"{spec.name} ({spec.type.name}) may be {self._allowed(spec)}"
             )
         value = constant.value
+        pointer = constant.letter if isinstance(constant, Pointer) else ""
+        if pointer != self.model.syntax.pointers.get(spec.kind, ""):
+            raise Refused(f"{shown(text)} cannot be {spec.name}", f"{spec.name} is {self._allowed(spec)}", "")
         if spec.type is REAL:
             if abs(value) > REAL_MAX:
                 raise Refused(f"{spec.name} = {shown(text)} is out of range", "REAL goes to 3.402823E+38", "3.3.3")
@@ -180,7 +192,9 @@ class Resolver:
         if spec.range:
             low, high = spec.range
             if not (fits and low <= wrap(value, spec.type) <= high):
-                raise Refused(f"{spec.name} = {shown(text)} is out of range", f"{spec.name} goes from {low} to {high}", "")
+                raise Refused(
+                    f"{spec.name} = {shown(text)} is out of range", f"{spec.name} goes from {pointer}{low} to {pointer}{high}", ""
+                )
         elif not fits:
             low, high = -(1 << spec.type.bits - 1), (1 << spec.type.bits) - 1
             raise Refused(
@@ -229,6 +243,9 @@ class Resolver:
             raise Refused(f"{shown(text)}: {spec.name} cannot be indexed", "name the device itself", "3.2.2")
         if operand.number in self.model.special(operand.area):
             raise Refused(f"{shown(text)}: special relays and registers cannot be indexed", "name the device itself", "3.2.2")
+        self._index_register(operand)
+
+    def _index_register(self, operand: Device | Bits | IndexedConstant) -> None:
         if operand.index >= self.model.areas[operand.index_area].count:
             raise Refused(
                 f"{self.model.name} has no {operand.index_area}{operand.index} ({self.model.areas[operand.index_area].span})", "", "3.2.2"

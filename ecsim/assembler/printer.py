@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 from typing import Protocol
 
-from .program import Program, Unit, Variable
+from .program import Program, Unit, Variable, is_label, wording
 
 # The columns of operands and comments; longer words push what follows to the right.
 OPERANDS, COMMENT = 6, 24
@@ -20,6 +20,9 @@ class Printable(Protocol):
 
 def print_program(program: Program) -> str:
     """The text of a whole program; a main program alone, without variables, needs no headers."""
+    if program.model.syntax.pointers:
+        tables = [print_globals(program.variables.values())] if program.variables else []
+        return "\n".join([*tables, *(print_unit_body(unit) for unit in program.units)])
     bare = len(program.units) == 1 and not program.variables and not program.main.variables and program.main.name == "MAIN"
     if bare:
         return print_unit_body(program.main)
@@ -54,9 +57,9 @@ def print_instructions(instructions: Sequence[Printable], titles: dict[int, str]
         if rows and (title or index in breaks):
             rows.append(("", ""))
         rows += [(f"// {line}".rstrip(), "") for line in title.split("\n")] if title else []
-        mnemonic = instruction.spelled or instruction.mnemonic
-        operands = " ".join(instruction.written)
-        rows.append((f"{mnemonic:<{OPERANDS - 1}} {operands}".rstrip() if operands else mnemonic, instruction.comment))
+        name = instruction.spelled or instruction.mnemonic
+        operands = "" if is_label(name, instruction.written) else " ".join(instruction.written)
+        rows.append((f"{name:<{OPERANDS - 1}} {operands}" if operands else wording(name, instruction.written), instruction.comment))
     lines = _with_comments(rows)
     return "\n".join(lines) + "\n" if lines else ""
 

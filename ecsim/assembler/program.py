@@ -13,6 +13,16 @@ from ..models import Model
 from ..values import DataType
 
 
+def wording(name: str, written: tuple[str, ...]) -> str:
+    """An instruction as a line of text; a label, whose name is the letter of its pointer, is its pointer alone."""
+    return " ".join(written if is_label(name, written) else (name, *written))
+
+
+def is_label(name: str, written: tuple[str, ...]) -> bool:
+    """Whether an instruction is a pointer on a line of its own: P1, I101."""
+    return len(name) == 1 and len(written) == 1 and written[0][:1] == name
+
+
 @dataclass(slots=True)
 class Instruction:
     """One line of the instruction list, resolved. `position` counts through the whole program and indexes every trace."""
@@ -30,8 +40,13 @@ class Instruction:
     spelled: str = ""  # the mnemonic as its family writes it, where that differs
     pulse: int = -1  # where the flow of the last scan is kept if it is executed at a rise only, -1 when in every scan
 
+    @property
+    def name(self) -> str:
+        """The mnemonic as its family writes it."""
+        return self.spelled or self.mnemonic
+
     def __str__(self) -> str:
-        return " ".join((self.spelled or self.mnemonic, *self.written))
+        return wording(self.name, self.written)
 
     def __repr__(self) -> str:
         return f"<Instruction {self.position}: {self}>"

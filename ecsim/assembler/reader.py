@@ -2,9 +2,10 @@
 
 import re
 from bisect import bisect_right
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
+from ..devices import Syntax
 from ..errors import Problem
 
 _BLOCK = re.compile(r"/\*.*?\*/|\(\*.*?\*\)", re.DOTALL)
@@ -62,6 +63,7 @@ class Source:
     units: list[RawUnit] = field(default_factory=list)
     problems: list[Problem] = field(default_factory=list)
     lines: list[str] = field(default_factory=list)
+    section: Callable[[str], str] = str  # where the family's manual has what a section of EC's is about
 
     def place(self, line: int) -> tuple[str, int]:
         """The file that a line stands in, and its number there."""
@@ -83,7 +85,7 @@ class Source:
     def report(self, line: int, message: str, hint: str = "", section: str = "", word: int = 0) -> None:
         """Note one problem."""
         name, own = self.place(line)
-        self.problems.append(Problem(own, self.column(line, word), message, hint, section, name))
+        self.problems.append(Problem(own, self.column(line, word), message, hint, self.section(section), name))
 
 
 def shown(text: str, limit: int = 40) -> str:
@@ -92,13 +94,18 @@ def shown(text: str, limit: int = 40) -> str:
     return repr(clean if len(clean) <= limit else clean[: limit - 3] + "...")
 
 
-def read(text: str | Mapping[str, str], name: str = "") -> Source:
-    """Take a program's text, or its files by name, apart; what cannot be read is noted in `problems`."""
+def read(text: str | Mapping[str, str], name: str = "", syntax: Syntax | None = None) -> Source:
+    """Take a program's text, or its files by name, apart; what cannot be read is noted in `problems`.
+
+    A family whose `syntax` has pointers begins its units with them, others with headers.
+    """
     files = text if isinstance(text, Mapping) else {name: text}
-    reader = _Reader(Source("\n".join(files.values())))
+    source = Source("\n".join(files.values()))
+    reader = _PointerReader(source, syntax) if syntax and syntax.pointers else _Reader(source)
     for file, part in files.items():
         reader.read(file, part)
-    return reader.source
+    reader.finish()
+    return source
 
 
 class _Reader:
@@ -135,6 +142,9 @@ class _Reader:
             )
         if self.in_globals:
             source.report(len(source.lines), "VAR_GLOBAL has no END_VAR")
+
+    def finish(self) -> None:
+        """All files have been read."""
 
     def _without_blocks(self, text: str) -> str:
         """Block comments become blanks; one that fills its lines becomes a `//` comment, so that it can be a title."""
@@ -275,3 +285,117 @@ class _Reader:
         else:
             hint = "end the variables with END_VAR, or " if self.role else ""
             self.source.report(number, f"{shown(' '.join(words))} declares no variable", f"{hint}write VAR_{role} NAME : INT, for example")
+
+
+_POINTER = re.compile(r"([PI])(\d{1,4})")
+_ENDS = {"SRET": "SUBROUTINE", "IRET": "INTERRUPT"}
+
+
+class _PointerReader(_Reader):
+    """A text whose units are marked by pointers: the main program up to FEND, then P1 ... SRET and I101 ... IRET.
+
+    A part behind FEND that ends with FEND or END, too, belongs to the main program: a jump leads to its label.
+    """
+
+    def __init__(self, source: Source, syntax: Syntax):
+        super().__init__(source)
+        self.syntax = syntax
+        self.main: RawUnit | None = None
+        self.part: RawUnit | None = None  # what is being read behind the first FEND
+        self.last: RawUnit | None = None  # what has been read before
+        self.behind = ""  # FEND or END, once it has been read
+        self.lost = False  # instructions outside every part are told once
+        self.pointers: dict[str, int] = {}  # pointer -> its line
+
+    def _line(self, words: list[str], comment: str, number: int) -> None:
+        head = words[0].upper()
+        pointer = _POINTER.fullmatch(head) if len(words) == 1 else None
+        if head in ("VAR_GLOBAL", "END_VAR") or self.in_globals:
+            super()._line(words, comment, number)
+        elif head in HEADERS:
+            self.source.report(
+                number,
+                f"{head} does not stand in a program of this family",
+                "a subroutine begins with its label, P1, behind FEND; SRET ends it",
+            )
+        elif self.behind == "END":
+            self.source.report(number, f"{shown(head)} stands behind END", "END is the last line of a program")
+        elif pointer:
+            self._pointer(Statement(pointer[1], (head,), number, comment, "\n".join(self.title)), int(pointer[2]))
+        else:
+            self._statement(Statement(head, tuple(words[1:]), number, comment, "\n".join(self.title)))
+        self.title = []
+
+    def _pointer(self, label: Statement, number: int) -> None:
+        report, name = self.source.report, label.operands[0]
+        if number == self.syntax.end_label and label.mnemonic == "P":
+            report(label.line, f"{name} stands for END and is no label", "take another number", "3.8")
+        name = f"{label.mnemonic}{number:03d}" if label.mnemonic == "I" else f"P{number}"
+        first = self.pointers.setdefault(name, label.line)
+        if first != label.line:
+            report(label.line, f"{name} stands twice", f"it stands in {self.source.where(first)} already", "3.8")
+        if label.mnemonic == "I":
+            if not self.behind:
+                report(label.line, f"{name} stands in the main program", "interrupt programs stand behind FEND", "3.8")
+            self._unfinished()
+            self._open_part(RawUnit("INTERRUPT", name, label.line, str(number)), label)
+        elif self.part is not None or not self.behind:
+            (self.part or self._main(label.line)).statements.append(label)
+        else:
+            self._open_part(RawUnit("SUBROUTINE", name, label.line), label)
+
+    def _open_part(self, part: RawUnit, label: Statement) -> None:
+        self.part = part
+        self.source.units.append(part)
+        part.statements.append(label)
+
+    def _main(self, line: int) -> RawUnit:
+        if self.main is None:
+            self.main = self.last = RawUnit("MAIN", "MAIN", line)
+            self.source.units.insert(0, self.main)
+        return self.main
+
+    def _statement(self, statement: Statement) -> None:
+        word, report = statement.mnemonic, self.source.report
+        ends = word in ("FEND", "END")
+        if self.part is None and self.behind and not ends:
+            if not self.lost:
+                report(
+                    statement.line, f"{shown(word)} stands behind {self.behind} outside every subroutine", "begin with a label, P1 or I101"
+                )
+            self.lost = True
+            return
+        if ends and self.part is not None and self.part.kind == "SUBROUTINE":  # a part of the main program
+            self.source.units.remove(self.part)
+            self.main.statements += self.part.statements
+            self.part, self.last = None, self.main
+        elif ends:
+            self._unfinished()
+        if ends and self.behind and self.last is not self.main:  # END behind the last SRET
+            self.last.statements.append(statement)
+        else:
+            (self.part or self._main(statement.line)).statements.append(statement)
+        if ends:
+            self.behind = word
+        elif word in _ENDS:
+            self._close(statement)
+
+    def _close(self, end: Statement) -> None:
+        kind = self.part.kind if self.part else "MAIN"
+        if kind != _ENDS[end.mnemonic]:
+            here = f"in {self.part.name}" if self.part else "in the main program"
+            what = "a subroutine, P1, behind FEND" if end.mnemonic == "SRET" else "an interrupt program, I101, behind FEND"
+            self.source.report(end.line, f"{end.mnemonic} stands {here}", f"it ends {what}")
+        if self.part is not None:
+            self.part, self.last = None, self.part
+
+    def _unfinished(self) -> None:
+        """A part that the next one, or the end of the text, cuts off."""
+        if self.part is None:
+            return
+        words = "IRET" if self.part.kind == "INTERRUPT" else "SRET (a subroutine) or FEND (a part of the main program)"
+        self.source.report(self.part.line, f"{self.part.name} has no end", f"write {words} as its last line")
+        self.part, self.last = None, self.part
+
+    def finish(self) -> None:
+        self._unfinished()

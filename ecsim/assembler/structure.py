@@ -1,24 +1,29 @@
 """The structure of a unit: its rungs and regions, and the rules of chapters 5, 6.1 and 7 about them."""
 
+from ..models import Model
 from .program import Instruction, Network, Region, Unit
 
 _LEAVES = {
     "CFEND": ("MAIN", "the main program", "6.1.5"),
+    "FX:CJ END": ("MAIN", "the main program", "6.1.4"),
     "CSRET": ("SUBROUTINE", "a subroutine", "6.1.12"),
     "CIRET": ("INTERRUPT", "an interrupt program", "6.1.9"),
 }
-_CLOSERS = {"MCR": "MC", "NEXT": "FOR", "RET": "STL"}
-_OPENERS = {closer_of: closer for closer, closer_of in _CLOSERS.items()}
+_PARTS = frozenset({"FX:FEND", "FX:END", "FX:SRET", "FX:IRET"})  # what ends a unit, or a part of it
+_CLOSERS = {"MCR": "MC", "FX:MCR": "MC", "NEXT": "FOR", "RET": "STL"}
+_OPENS = {"MC": "MC", "FX:MC": "MC", "FOR": "FOR", "FX:FOR": "FOR"}
+_ENDS = {"MC": "MCR", "FOR": "NEXT", "STL": "RET"}
+_BLOCKS = frozenset({"ANB", "ORB", "MPS", "MRD", "MPP"})
 
 
-def find_structure(unit: Unit, limits: dict[str, int], initial_steps: int, report, where) -> None:
+def find_structure(unit: Unit, model: Model, report, where) -> None:
     """Fill `unit.networks` and `unit.nodes`; `report(instruction, message, hint, section)` gets every broken rule, `where(line)` names a line."""
-    _Structure(unit, limits, initial_steps, report, where).walk()
+    _Structure(unit, model, report, where).walk()
 
 
 class _Structure:
-    def __init__(self, unit: Unit, limits: dict[str, int], initial_steps: int, report, where):
-        self.unit, self.limits, self.initial_steps, self.report, self.where = unit, limits, initial_steps, report, where
+    def __init__(self, unit: Unit, model: Model, report, where):
+        self.unit, self.model, self.limits, self.report, self.where = unit, model, model.limits, report, where
         self.regions: list[Region] = []
         self.nodes: list[list] = [unit.nodes]
         self.start = 0
@@ -49,18 +54,18 @@ class _Structure:
         self._finish(end)
         for region in reversed(self.regions):
             opening = self.unit.instructions[region.opening]
-            closer = _OPENERS[region.kind]
+            closer = _ENDS[region.kind]
             self.report(
                 opening,
                 f"{opening} has no {closer}",
-                f"close it with {closer}{f' {region.number}' if region.kind == 'MC' else ''}",
+                f"close it with {closer}{f' {opening.operands[0]}' if region.kind == 'MC' else ''}",
                 "7.2.3" if region.kind == "STL" else "5.2.1" if region.kind == "MC" else "6.1.1",
             )
             region.closing = end
         self._check_jumps()
         self._check_flows()
         if self.unit.kind == "MAIN":
-            _Transitions(self.unit, self.steps, self.initial_steps, self.report, self.where).check()
+            _Transitions(self.unit, self.steps, self.model, self.report, self.where).check()
 
     def _contact(self, index: int, instruction: Instruction) -> None:
         join = instruction.definition.join
@@ -98,7 +103,8 @@ class _Structure:
         if self.regions and self.regions[-1].kind in ("STL", "MC"):
             self.bus = True
             return True
-        self.report(instruction, f"{instruction} has no power flow", "begin the rung with a contact, for example LD SM0", "4.1.1")
+        on = "{}{}".format(*self.model.flag("running"))
+        self.report(instruction, f"{instruction} has no power flow", f"begin the rung with a contact, for example LD {on}", "4.1.1")
         self.blocks = 1
         return False
 
@@ -136,6 +142,8 @@ class _Structure:
     def _mps(self, instruction: Instruction) -> None:
         if not self._flow(instruction):
             return
+        if self.bus and self.model.strict_steps and self.regions[-1].kind == "STL":
+            self.report(instruction, "MPS stands directly behind STL", "put a contact before it", "5.3.1")
         self._one_block(instruction)
         if len(self.kept) >= self.limits["stack"]:
             self.report(
@@ -197,11 +205,18 @@ class _Structure:
             return
         if mnemonic in _CLOSERS:
             self._close(index, instruction)
+        elif mnemonic in _OPENS:
+            self._open(index, instruction)
+            return
+        elif mnemonic in _PARTS and self.regions:
+            region = self.regions[-1]
+            opening = self.unit.instructions[region.opening]
+            self.report(instruction, f"{instruction} stands inside {opening}", f"close it with {_ENDS[region.kind]} first", "5.2.1")
         if mnemonic == "LBL":
             label = instruction.operands[0].value
             if label in self.labels:
                 first = self.where(self.labels[label][0].line)
-                self.report(instruction, f"the label {label} stands twice", f"it stands in {first} already", "6.1.3")
+                self.report(instruction, f"the label {instruction.operands[0]} stands twice", f"it stands in {first} already", "6.1.3")
             self.labels[label] = (instruction, self._loops())
         self._network(index, index + 1)
         self.start = index + 1
@@ -225,7 +240,7 @@ class _Structure:
                 self._pop(index)
             elif current is not None:
                 self.report(
-                    instruction, f"{instruction} stands inside {current.kind}", f"close it with {_OPENERS[current.kind]} first", "5.2.1"
+                    instruction, f"{instruction} stands inside {current.kind}", f"close it with {_ENDS[current.kind]} first", "5.2.1"
                 )
             joins = index + 1 < len(self.unit.instructions) and self.unit.instructions[index + 1].mnemonic == "STL"
             if joins:
@@ -252,11 +267,20 @@ class _Structure:
         kind = _CLOSERS[instruction.mnemonic]
         section = instruction.definition.section
         wanted = instruction.operands[0].value if kind == "MC" else None
+        if wanted is not None and self.model.levels:  # the end of a level is that of the levels inside it
+            while self.regions and self.regions[-1].kind == "MC" and self.regions[-1].number > wanted:
+                self._pop(index)
         if self.regions and self.regions[-1].kind == kind and (wanted is None or self.regions[-1].number == wanted):
             self._pop(index)
         elif any(r.kind == kind and (wanted is None or r.number == wanted) for r in self.regions):
             inner = self.regions[-1]
-            name = f"{inner.kind} {inner.number}" if inner.kind == "MC" else f"STL {inner.steps[0]}" if inner.kind == "STL" else inner.kind
+            name = (
+                f"{inner.kind} {self.unit.instructions[inner.opening].operands[0]}"
+                if inner.kind == "MC"
+                else f"STL {inner.steps[0]}"
+                if inner.kind == "STL"
+                else inner.kind
+            )
             self.report(
                 instruction, f"{instruction} crosses {name}", f"close {name} first; structures may be nested but not cross", section
             )
@@ -267,13 +291,13 @@ class _Structure:
             self.report(
                 instruction,
                 f"{instruction} closes nothing",
-                f"there is no open {kind}{f' {wanted}' if kind == 'MC' else ''} before it",
+                f"there is no open {kind}{f' {instruction.operands[0]}' if kind == 'MC' else ''} before it",
                 section,
             )
 
     def _output(self, index: int, instruction: Instruction) -> None:
         mnemonic = instruction.mnemonic
-        if mnemonic in ("MC", "FOR"):
+        if mnemonic in _OPENS:
             self._open(index, instruction)
         elif mnemonic == "CJ":
             self.jumps.append((instruction, instruction.operands[0].value, self._loops()))
@@ -296,7 +320,7 @@ class _Structure:
         return in_step and instruction.mnemonic in ("SET", "OUT") and instruction.operands[0].area == "S"
 
     def _open(self, index: int, instruction: Instruction) -> None:
-        kind = instruction.mnemonic
+        kind = _OPENS[instruction.mnemonic]
         section = instruction.definition.section
         number = instruction.operands[0].value if kind == "MC" else len([r for r in self.regions if r.kind == "FOR"])
         if self.kept:
@@ -305,12 +329,20 @@ class _Structure:
         if kind == "MC":
             if any(r.kind == "STL" for r in self.regions):
                 self.report(instruction, "MC cannot be used in a step", "", "5.2.1")
-            if any(r.kind == "MC" and r.number == number for r in self.regions):
-                self.report(instruction, f"{instruction} stands inside MC {number}", "nested structures have different numbers", section)
+            open_levels = [r for r in self.regions if r.kind == "MC"]
+            if any(r.number == number for r in open_levels):
+                name = f"MC {instruction.operands[0]}"
+                self.report(instruction, f"{instruction} stands inside {name}", "nested structures have different numbers", section)
+            elif self.model.levels and any(r.number > number for r in open_levels):
+                outer = self.unit.instructions[open_levels[-1].opening]
+                self.report(instruction, f"{instruction} stands inside {outer}", "levels go up from N0 on, from outside to inside", section)
         depth = sum(r.kind == kind for r in self.regions) + 1
         if depth > self.limits[f"{kind} nesting"]:
             self.report(instruction, f"{kind} is nested {depth} deep", f"at most {self.limits[f'{kind} nesting']}", section)
-        self._finish(index + 1)
+        if instruction.definition.bus:
+            self._network(index, index + 1)
+        else:
+            self._finish(index + 1)
         self._push(Region(kind, number, index))
         self.start = index + 1
 
@@ -327,7 +359,7 @@ class _Structure:
             if label not in self.labels:
                 self.report(
                     instruction,
-                    f"there is no LBL {label} in {self.unit.name}",
+                    f"there is no {'label' if self.model.syntax.pointers else 'LBL'} {instruction.operands[0]} in {self.unit.name}",
                     "a label belongs to the unit in which it is jumped to",
                     "6.1.4",
                 )
@@ -338,12 +370,14 @@ class _Structure:
 class _Transitions:
     """7.4.1(6): SET leads to the adjacent step, OUT jumps."""
 
-    def __init__(self, unit: Unit, steps: dict[int, Instruction], initial_steps: int, report, where):
-        self.unit, self.steps, self.initial_steps, self.report = unit, steps, initial_steps, report
-        self.where = where
+    def __init__(self, unit: Unit, steps: dict[int, Instruction], model: Model, report, where):
+        self.unit, self.steps, self.model, self.report, self.where = unit, steps, model, report, where
+        self.initial_steps = model.initial_steps
 
     def check(self) -> None:
         transitions = list(self._transitions())
+        if self.model.strict_steps:
+            self._check_conditions(transitions)
         reached = {target.number for _, instruction, target, _ in transitions if instruction.mnemonic == "SET"}
         order = {number: place for place, number in enumerate(self.steps)}
         links: dict[int, set[int]] = {}
@@ -380,6 +414,31 @@ class _Transitions:
                 and self._follows(target.number, sources, order)
             ):
                 self.report(instruction, f"{instruction} leads to the adjacent step", f"a transition is written SET {target}", "7.4.1(6)")
+
+    def _check_conditions(self, transitions: list) -> None:
+        """4.1.1 of the FX family: how many ways a branch has, and what may stand in the conditions of branches and joins."""
+        for _, region in self._sections():
+            ways = [instruction for source, instruction, *_ in transitions if source is region]
+            if not ways:
+                continue
+            most = self.model.limits["ways of an initial step" if region.number < self.initial_steps else "ways"]
+            if len(ways) > most:
+                self.report(ways[most], f"{len(ways)} ways lead on from S{region.number}", f"at most {most}", "7.4.1")
+            if len(region.steps) > 1 and len(ways) > 1:
+                hint = "lead to one empty step, and branch from that"
+                self.report(ways[1], f"{ways[1]} branches straight from a join", hint, "7.4.1")
+            if len(region.steps) > 1 or len(ways) > 1:
+                self._check_blocks(region, ways)
+
+    def _check_blocks(self, region: Region, ways: list[Instruction]) -> None:
+        instructions = self.unit.instructions
+        for network in region.nodes:
+            rung = instructions[network.start : network.end] if isinstance(network, Network) else ()
+            way = next((instruction for instruction in rung if any(instruction is each for each in ways)), None)
+            block = next((instruction for instruction in rung if instruction.mnemonic in _BLOCKS), None)
+            if way and block:
+                hint = "work the condition out in a relay before, and let that lead on"
+                self.report(block, f"{block} stands in the condition of {way}, where ways part or join", hint, "7.4.1")
 
     @staticmethod
     def _reached_another_way(sources: list[int], target: int, links: dict[int, set[int]]) -> bool:

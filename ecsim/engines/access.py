@@ -4,7 +4,7 @@ import sys
 from array import array
 from struct import Struct, pack, unpack
 
-from ..devices import Bits, Constant, Device, Operand, Text
+from ..devices import Bits, Constant, Device, IndexedConstant, Operand, Text
 from ..errors import OPERAND, RANGE, Fault
 from ..memory import Memory
 from ..models import Model
@@ -45,7 +45,7 @@ class Access:
 
     def can_fault(self, operand: Operand) -> bool:
         """Whether reaching the operand can end as error 65."""
-        return getattr(operand, "index", None) is not None
+        return getattr(operand, "index", None) is not None and not isinstance(operand, IndexedConstant)
 
     # -- reading ------------------------------------------------------------------------------------------------
 
@@ -53,6 +53,8 @@ class Access:
         """An expression, safe to stand anywhere, for the value of an operand read as `kind`."""
         if isinstance(operand, Constant):
             return self.constant(kind, operand)
+        if isinstance(operand, IndexedConstant):
+            return self._indexed_constant(kind, operand)
         if isinstance(operand, Bits):
             return self._load_bits(kind, operand)
         if operand.index is not None:
@@ -75,6 +77,13 @@ class Access:
         if value > kind.high:
             value -= 1 << kind.bits
         return f"({value})" if value < 0 else str(value)
+
+    @staticmethod
+    def _indexed_constant(kind: DataType, constant: IndexedConstant) -> str:
+        """The sum, as a register of the type holds it."""
+        half, full = 1 << kind.bits - 1, (1 << kind.bits) - 1
+        total = f"{constant.value} + {constant.index_area}[{constant.index}]"
+        return f"(({total} + {half} & {full}) - {half})" if kind.signed else f"({total} & {full})"
 
     def _pair(self, first: str, second: str) -> tuple[str, str]:
         return (first, second) if self.model.high_word_first else (second, first)
@@ -209,8 +218,8 @@ class Access:
         """An expression for a list of `count` values from an operand on."""
         if isinstance(operand, Text):
             return f"{list(operand.text.encode('ascii').ljust(int(count), bytes(1)))}"
-        if isinstance(operand, Constant):  # it holds one element, whatever the count
-            return f"[{self.constant(kind, operand)}][:counted({count})]"
+        if isinstance(operand, Constant | IndexedConstant):  # it holds one element, whatever the count
+            return f"[{self.load(kind, operand)}][:counted({count})]"
         _, high = self.limits(kind, operand.area)
         number = self.place(operand)
         if isinstance(operand, Bits):

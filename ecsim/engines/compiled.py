@@ -225,7 +225,8 @@ class _Rung:
     def _contact(self, instruction: Instruction) -> None:
         lines, text = self.c.contact(instruction)
         if lines:
-            self._settle()
+            if not instruction.definition.given:  # else they change nothing but what it keeps
+                self._settle()
             self.lines += lines
         closed = Flow(text, _NOT if text.startswith("not ") else _ATOM)
         join = instruction.definition.join
@@ -238,10 +239,15 @@ class _Rung:
 
     def _settle(self) -> None:
         """Fix the flows that read a special relay or register: the statements that follow may change it (SM20 and its like)."""
-        special = re.compile(rf"\b({self.c.model.special_bits}|{self.c.model.special_words})\[")
-        self.stack = [self._name(flow.text) if special.search(flow.text) else flow for flow in self.stack]
-        if self.flow is not None and special.search(self.flow.text):
+        self.stack = [self._name(flow.text) if self._special(flow.text) else flow for flow in self.stack]
+        if self.flow is not None and self._special(self.flow.text):
             self.flow = self._name(self.flow.text)
+
+    def _special(self, text: str) -> bool:
+        """Whether an expression reads a special relay or register."""
+        model = self.c.model
+        found = re.findall(rf"\b(?:{model.special_bits}|{model.special_words})\[(\d+)", text)
+        return any(int(number) >= model.first_special for number in found)
 
     def _cut(self, flow: Flow) -> Flow:
         return self._name(flow.text) if len(flow.text) > MAX_TEXT or flow.depth > MAX_DEPTH else flow
@@ -315,7 +321,12 @@ class _Rung:
     def pop(self) -> None:
         self.flow = self.kept.pop()
 
-    def guard(self) -> None:
+    def pulse(self, d: Device, rising: bool) -> None:
+        self.lines += self.c.pulse_lines(self.instruction, d, self._told().text, rising)
+
+    def guard(self, d: Device | None = None) -> None:
+        if d is not None:
+            self.lines += self.c.access.store(BOOL, d, self._told().text)
         self.opened = self._bus().text
 
     def step(self) -> None:
@@ -324,8 +335,10 @@ class _Rung:
     def close(self) -> None:
         pass
 
-    def repeat(self, count: Operand) -> None:
+    def repeat(self, count: Operand, least: int = 0) -> None:
         load = self.c.access.load(INT, count)
+        if least:
+            load = f"max({load}, {least})"
         flow = self._bus().text
         fetch = self.c.guard_faults([f"turns = {load}"], (count,))
         self.lines += ["turns = 0", *([f"if {flow}:", *indented(fetch)] if flow != "True" else fetch)]

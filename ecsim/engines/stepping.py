@@ -352,19 +352,25 @@ class _Builder(Writer):
     def pop(self) -> None:
         self._op(["return KEPT.pop()"])
 
-    def guard(self) -> None:
+    def pulse(self, d: Device, rising: bool) -> None:
+        self._op([*self.pulse_lines(self.instruction, d, "flow", rising), "return flow"])
+
+    def guard(self, d: Device | None = None) -> None:
+        if d is not None:
+            self._op([*self.access.store(BOOL, d, "flow"), "return flow"])
         self.opening, self.done = self.instruction.position, True
 
     def step(self) -> None:
         self.opening, self.done = self.instruction.position, True
 
-    def repeat(self, count: Operand) -> None:
+    def repeat(self, count: Operand, least: int = 0) -> None:
         self.opening, self.done = self.instruction.position, True
         self.turns: list = [None]
         turns = self.turns
+        load = self.access.load(INT, count)
         self._define(
             "",
-            [*self.guard_faults([f"return {self.access.load(INT, count)}"], (count,)), "return 0"],
+            [*self.guard_faults([f"return max({load}, {least})" if least else f"return {load}"], (count,)), "return 0"],
             lambda function: turns.__setitem__(0, function),
         )
 
@@ -389,10 +395,22 @@ class _Builder(Writer):
 
     def _branch(self, target: Callable[[], int]) -> None:
         """A control that goes to `target()` while the flow is ON, on to the next instruction otherwise."""
-        stage = self.stage
+        stage, reaches = self.stage, self._reaching()
         after = self._control(None, self.instruction.position)
-        stage.control = lambda flow: target() if flow else after
+        stage.control = lambda flow: target() if reaches(flow) else after
         self.done = True
+
+    def _reaching(self) -> Callable[[bool], bool]:
+        """Whether a flow makes the instruction act that is being written: while it is ON, or when it rises."""
+        if self.instruction.pulse < 0:
+            return bool
+        kept, slot = self.engine.memory.lists["E"], self.instruction.pulse
+
+        def rises(flow) -> bool:
+            was, kept[slot] = kept[slot], bool(flow)
+            return flow and not was
+
+        return rises
 
     def leave(self) -> None:
         self._branch(lambda: self._return(True))
@@ -407,7 +425,7 @@ class _Builder(Writer):
         return HALT
 
     def call(self, name: str, arguments: tuple[Operand, ...]) -> None:
-        callee, engine, stage = self.program.unit(name), self.engine, self.stage
+        callee, engine, stage, reaches = self.program.unit(name), self.engine, self.stage, self._reaching()
         after = self._control(None, self.instruction.position)
         flows: list = []
         made: dict[str, Callable] = {}
@@ -432,7 +450,7 @@ class _Builder(Writer):
 
         def control(flow) -> int:
             flows.append(flow)
-            if not flow or not made["enter"]():
+            if not reaches(flow) or not made["enter"]():
                 return after
             engine.returns.append(back)
             return engine.entries[callee.name.upper()]

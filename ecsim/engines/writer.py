@@ -214,6 +214,9 @@ class Writer:
             lines, fields = self._loads(instruction, pattern, "")
             self.globals.update(pattern.globals)
             text = pattern.fill(fields)
+        if instruction.definition.given:  # what it keeps, besides whether it is closed
+            name = f"c{instruction.position}"
+            return [*lines, f"{name}, E[{instruction.slot}] = {text.strip('()')}"], name
         if not (self.can_fault and instruction.definition.application):
             return lines, text
         name = f"c{instruction.position}"
@@ -483,16 +486,31 @@ class Writer:
     def turn_lines(self, d: Device, on: bool) -> list[str]:
         """A bit set or reset."""
         lines = self.access.store(BOOL, d, "True") if on else self.access.reset(d)
+        if on and d.area == "S" and self.model.overlap:
+            lines += [f"ENDING.discard({d.number})"]
         return self._unless_held(lines) if self.in_step and d.area == "S" else lines
 
     def transfer_lines(self, target: Device) -> list[str]:
-        """A step handed over: the steps that the transition stands in end, the target begins (5.3.2)."""
-        return self._unless_held([*(f"S[{step.number}] = False" for step in self.region.steps), f"S[{target.number}] = True"])
+        """A step handed over: the steps that the transition stands in end, at once or with the scan, the target begins (5.3.2)."""
+        sources = [step.number for step in self.region.steps]
+        if self.model.overlap:
+            ends = [*(f"ENDING.add({number})" for number in sources), f"ENDING.discard({target.number})"]
+        else:
+            ends = [f"S[{number}] = False" for number in sources]
+        return self._unless_held([*ends, f"S[{target.number}] = True"])
 
-    @staticmethod
-    def _unless_held(lines: list[str]) -> list[str]:
+    def _unless_held(self, lines: list[str]) -> list[str]:
         """What a transition does, asked for in the scan in which it fires: nothing while transitions are held."""
-        return ["if not HELD[0]:", *indented(lines)]
+        held = "HELD[0]"
+        if "hold transitions" in self.model.relays:
+            held = "({} or {}[{}])".format(held, *self.model.flag("hold transitions"))
+        return [f"if not {held}:", *indented(lines)]
+
+    def pulse_lines(self, instruction: Instruction, d: Device, flow: str, rising: bool) -> list[str]:
+        """A coil that is ON in the scan in which the flow rises or falls."""
+        was = f"E[{instruction.slot}]"
+        edge = f"{flow} and not {was}" if rising else f"{was} and not {flow}"
+        return [*self.access.store(BOOL, d, edge), f"{was} = {flow}"]
 
     def clear_lines(self, unit: Unit, region: Region) -> list[str]:
         """What is cleared when a region is left: the destinations of OUT, TON, TOF ... inside (5.2.1, 5.3.1)."""

@@ -21,7 +21,7 @@ def lbl(code, label):
     code.label(label.value)
 
 
-@emitted("CJ", "S:LABEL", steps=3, section="6.1.4")
+@emitted("CJ", "S:LABEL", steps=3, section="6.1.4", pulsed=True)
 def cj(code, label):
     """Jump to the label S while the flow is ON."""
     code.jump(label.value)
@@ -39,13 +39,13 @@ def wdt(machine):
     machine.watchdog_reset()
 
 
-@command("EI", "", steps=1, section="6.1.7")
+@command("EI", "", steps=1, section="6.1.7", pulsed=False)
 def ei(machine):
     """Let events ask for their interrupt programs."""
     machine.interrupts.enabled = True
 
 
-@command("DI", "", steps=1, section="6.1.8")
+@command("DI", "", steps=1, section="6.1.8", pulsed=False)
 def di(machine):
     """Let no event ask for its interrupt program; what is waiting already is still served."""
     machine.interrupts.enabled = False
@@ -63,7 +63,7 @@ def stop(code):
     code.halt()
 
 
-@emitted("CALL", "S:ROUTINE", steps=None, section="6.1.11")
+@emitted("CALL", "S:ROUTINE", steps=None, section="6.1.11", pulsed=True)
 def call(code, routine, *arguments):
     """Execute a subroutine with the values of its variables while the flow is ON."""
     code.call(routine.text, arguments)

@@ -9,12 +9,12 @@ from .define import command
 FASTEST = 100_000  # Hz
 
 
-def _counter_inputs(model, operands):
+def counter_inputs(model, operands):
     counter = next(operand for operand in operands if getattr(operand, "area", "") == "C")
     return model.fast_counters[counter.number].needs
 
 
-@command("HCNT", "claim >D:HCOUNTER S:DINT", steps=7, section="6.10.1", cleared=True, faults=(OPERAND,), occupies=_counter_inputs)
+@command("HCNT", "claim >D:HCOUNTER S:DINT", steps=7, section="6.10.1", cleared=True, faults=(OPERAND,), occupies=counter_inputs)
 def hcnt(machine, claim, counter, preset):
     """Drive a high-speed counter: it counts its inputs while the flow is ON; its contact turns ON at S upward and OFF downward."""
     machine.counters.drive(claim, counter, preset, machine.clock[0])

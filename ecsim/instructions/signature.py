@@ -54,6 +54,7 @@ SPECIAL: dict[str, tuple[DataType, str, tuple[int, int] | None]] = {
     "STEP": (BOOL, "S", None),
     "NEST": (INT, "const", (0, 7)),
     "LABEL": (INT, "const", (0, 127)),
+    "EVENT": (INT, "const", None),
     "ROUTINE": (WORD, "routine", None),
     "TEXT": (WORD, "text", None),  # characters as they are typed, as many as the span says
     "PULSE": (BOOL, "Y", (0, 1)),

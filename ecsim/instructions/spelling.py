@@ -11,6 +11,13 @@ def instructions_of(model: Model) -> dict[str, Definition]:
     return {spelled: TABLE[meant.keys[0] if isinstance(meant, By) else meant] for spelled, meant in model.spelling.items()}
 
 
+def section_of(model: Model, spelled: str, row: Definition) -> str:
+    """Where the family's manual has an instruction under that name, with the pulse suffix or without."""
+    if not model.functions:
+        return row.section
+    return model.functions.get(spelled) or model.functions.get(spelled.removesuffix(model.pulse_suffix)) or row.section
+
+
 def pulse_forms_of(model: Model) -> dict[str, Definition]:
     """The names with the model's pulse suffix -> their row; a name that belongs to another instruction stays with it."""
     own = instructions_of(model)

@@ -6,6 +6,8 @@ does not have, has a row of its own, whose key begins with "FX:". The 32-bit for
 
 from .model import By
 
+END_LABEL = 63  # P63 stands for END (manual 3.8)
+POINTERS = {"LABEL": "P", "NEST": "N", "EVENT": "I"}  # kind of operand -> its letter
 _COMPARISONS = {
     f"{join}{wide}{relation}" for join in ("LD", "AND", "OR") for wide in ("", "D") for relation in ("=", ">", "<", "<>", "<=", ">=")
 }
@@ -20,44 +22,43 @@ def _into(word: str, bits: str) -> By:
 
 H2U: dict[str, str | By] = {
     # basic instructions
-    **{name: name for name in "LD LDI AND ANI OR ORI ANB ORB MPS MRD MPP INV NOP STL RET SET RST MC MCR".split()},
-    "OUT": By("OUT", ("T", 0, 245, "TON"), ("T", 246, 255, "TONR"), ("C", 0, 199, "CTU"), ("C", 200, 234, "DCNT"), ("C", 235, 255, "HCNT")),
+    **{name: name for name in "LD LDI AND ANI OR ORI ANB ORB MPS MRD MPP INV NOP STL RET".split()},
+    **{name: f"FX:{name}" for name in "LDP LDF ANDP ANDF ORP ORF PLS PLF MC MCR END I".split()},
+    "OUT": By(
+        "OUT",
+        ("T", 0, 245, "FX:OUT T"),
+        ("T", 246, 255, "FX:OUT T246"),
+        ("C", 0, 199, "FX:OUT C"),
+        ("C", 200, 234, "FX:OUT C200"),
+        ("C", 235, 255, "FX:OUT C235"),
+    ),
+    "SET": By("SET", ("T", 0, 255, "FX:SET"), ("C", 0, 255, "FX:SET")),
+    "RST": By("RST", ("D", 0, 8255, "FX:RST D"), ("V", 0, 7, "FX:RST D"), ("Z", 0, 7, "FX:RST D")),
+    "P": "LBL",
     # FNC 00 to 09: program flow
-    "CJ": "CJ",
+    "CJ": By("CJ", ("P", END_LABEL, END_LABEL, "FX:CJ END")),
     "CALL": "CALL",
+    "SRET": "FX:SRET",
+    "IRET": "FX:IRET",
     "EI": "EI",
     "DI": "DI",
+    "FEND": "FX:FEND",
     "WDT": "WDT",
-    "FOR": "FOR",
+    "FOR": "FX:FOR",
     "NEXT": "NEXT",
     # FNC 10 to 19: comparing and moving
-    "CMP": "FX:CMP",
-    "DCMP": "FX:DCMP",
-    "ZCP": "FX:ZCP",
-    "DZCP": "FX:DZCP",
     "MOV": "MOV",
     "DMOV": "DMOV",
-    "SMOV": "FX:SMOV",
     "CML": "WINV",
     "DCML": "DWINV",
-    "BMOV": "FX:BMOV",
-    "FMOV": "FX:FMOV",
-    "DFMOV": "FX:DFMOV",
-    "XCH": "FX:XCH",
-    "DXCH": "FX:DXCH",
-    "BCD": "FX:BCD",
-    "DBCD": "FX:DBCD",
-    "BIN": "FX:BIN",
-    "DBIN": "FX:DBIN",
+    "FMOV": "FMOV",
+    "DFMOV": "DFMOV",
+    "BCD": "BCD",
+    "DBCD": "DBCD",
+    "BIN": "BIN",
+    "DBIN": "DBIN",
     # FNC 20 to 29: arithmetic and logic
-    "ADD": "FX:ADD",
-    "DADD": "FX:DADD",
-    "SUB": "FX:SUB",
-    "DSUB": "FX:DSUB",
     "MUL": "MUL",
-    "DMUL": "FX:DMUL",
-    "DIV": "FX:DIV",
-    "DDIV": "FX:DDIV",
     "INC": "INC",
     "DINC": "DINC",
     "DEC": "DEC",
@@ -71,39 +72,10 @@ H2U: dict[str, str | By] = {
     "WXOR": "WXOR",
     "DXOR": "DWXOR",
     "DWXOR": "DWXOR",
-    "NEG": "FX:NEG",
-    "DNEG": "FX:DNEG",
     # FNC 30 to 39: rotating and shifting
-    "ROR": "FX:ROR",
-    "DROR": "FX:DROR",
-    "ROL": "FX:ROL",
-    "DROL": "FX:DROL",
-    "RCR": "FX:RCR",
-    "DRCR": "FX:DRCR",
-    "RCL": "FX:RCL",
-    "DRCL": "FX:DRCL",
-    "SFTR": "FX:SFTR",
-    "SFTL": "FX:SFTL",
-    "WSFR": "FX:WSFR",
-    "WSFL": "FX:WSFL",
-    "SFWR": "FX:SFWR",
-    "SFRD": "FX:SFRD",
     # FNC 40 to 49: data
-    "ZRST": By("FX:ZRST", ("D", *ALL, "FX:ZRST D")),
-    "DECO": By(_into("FX:DECO", "FX:DECO to bits"), *((area, *ALL, _into("FX:DECO bits", "FX:DECO bits to bits")) for area in "XYMS")),
-    "ENCO": By("FX:ENCO", *((area, *ALL, "FX:ENCO bits") for area in "XYMS")),
-    "SUM": "FX:SUM",
-    "DSUM": "FX:DSUM",
-    "BON": "FX:BON",
-    "DBON": "FX:DBON",
-    "MEAN": "FX:MEAN",
-    "DMEAN": "FX:DMEAN",
-    "ANS": "FX:ANS",
-    "ANR": "FX:ANR",
-    "SQR": "FX:SQR",
-    "DSQR": "FX:DSQR",
-    "FLT": "FX:FLT",
-    "DFLT": "FX:DFLT",
+    "FLT": "FLT",
+    "DFLT": "DFLT",
     # FNC 50 to 59: high-speed processing
     "MTR": "FX:MTR",
     # FNC 60 to 69: convenient instructions
@@ -135,42 +107,19 @@ H2U: dict[str, str | By] = {
     "TO": "FX:TO",
     "DTO": "FX:DTO",
     # FNC 80 to 88: serial devices
-    "PRUN": By("FX:PRUN", ("KnM", *ALL, "FX:PRUN M")),
-    "DPRUN": By("FX:DPRUN", ("KnM", *ALL, "FX:DPRUN M")),
-    "ASCI": "FX:ASCI",
-    "HEX": "FX:HEX",
-    "CCD": "FX:CCD",
     "VRRD": "FX:VRRD",
     "VRSC": "FX:VRSC",
     "PID": "FX:PID",
     # FNC 110 to 132: floating point, whose names are written with D in front
-    "DECMP": "FX:ECMP",
-    "DEZCP": "FX:EZCP",
-    "DEBCD": "FX:EBCD",
-    "DEBIN": "FX:EBIN",
     "DEADD": "RADD",
     "DESUB": "RSUB",
     "DEMUL": "RMUL",
     "DEDIV": "RDIV",
     "DESQR": "RSQT",
-    "INT": "FX:INT",
-    "DINT": "FX:DINT",
-    "DSIN": "FX:SIN",
-    "DCOS": "FX:COS",
-    "DTAN": "FX:TAN",
     # FNC 147: swapping bytes
     "SWAP": "SWAP",
-    "DSWAP": "FX:DSWAP",
     # FNC 155 to 159: positioning
     # FNC 160 to 169: clock
-    "TCMP": "FX:TCMP",
-    "TZCP": "FX:TZCP",
-    "TADD": "FX:TADD",
-    "TSUB": "FX:TSUB",
-    "TRD": "FX:TRD",
-    "TWR": "FX:TWR",
-    "HOUR": "FX:HOUR",
-    "DHOUR": "FX:DHOUR",
     # FNC 170 and 171: Gray code
     "GRY": "GRY",
     "DGRY": "DGRY",
@@ -188,3 +137,64 @@ _H2U_ONLY = frozenset(
 H1U: dict[str, str | By] = {
     name: key for name, key in H2U.items() if name not in _H2U_ONLY and (name[:1] != "D" or name[1:] not in _H2U_ONLY)
 }
+
+# The function numbers, ten in a row of the manual; a dot stands for a number without an instruction.
+_NUMBERS = {
+    0: "CJ CALL SRET IRET EI DI FEND WDT FOR NEXT",
+    10: "CMP ZCP MOV SMOV CML BMOV FMOV XCH BCD BIN",
+    20: "ADD SUB MUL DIV INC DEC WAND WOR WXOR NEG",
+    30: "ROR ROL RCR RCL SFTR SFTL WSFR WSFL SFWR SFRD",
+    40: "ZRST DECO ENCO SUM BON MEAN ANS ANR SQR FLT",
+    50: "REF REFF MTR HSCS HSCR HSZ SPD PLSY PWM PLSR",
+    60: "IST SER ABSD INCD TTMR STMR ALT RAMP ROTC SORT",
+    70: "TKY HKY DSW SEGD SEGL ARWS ASC PR FROM TO",
+    80: "RS PRUN ASCI HEX CCD VRRD VRSC . PID",
+    110: "ECMP EZCP . . . . . . EBCD EBIN",
+    120: "EADD ESUB EMUL EDIV . . . ESQR . INT",
+    130: "SIN COS TAN",
+    147: "SWAP",
+    155: "ABS ZRN PLSV DRVI DRVA",
+    160: "TCMP TZCP TADD TSUB . . TRD TWR . HOUR",
+    170: "GRY GBIN",
+    224: "LD= LD> LD< . LD<> LD<= LD>=",
+    232: "AND= AND> AND< . AND<> AND<= AND>=",
+    240: "OR= OR> OR< . OR<> OR<= OR>=",
+}
+_FUNCTIONS = {name: first + place for first, row in _NUMBERS.items() for place, name in enumerate(row.split()) if name != "."}
+_WIDE = {"DAND": "WAND", "DOR": "WOR", "DXOR": "WXOR"}  # 32-bit forms that are not D and the name
+# What is not in the manual by name, but in every list of the family's instructions.
+REFERENCE = frozenset(
+    [
+        *"NEXT CMP CML BMOV ADD MUL DIV DEC WAND NEG CCD VRRD VRSC".split(),
+        *(
+            f"{join}{relation}"
+            for join in ("LD", "AND", "OR")
+            for relation in ("=", ">", "<", "<>", "<=", ">=")
+            if join + relation != "OR>="
+        ),
+    ]
+)
+
+
+def plain(name: str) -> str:
+    """The name of an instruction by which the manual lists it: of a 32-bit form that of the 16-bit one."""
+    if name in _FUNCTIONS:
+        return name
+    narrow = next((join + name[len(join) + 1 :] for join in ("LD", "AND", "OR") if name.startswith(f"{join}D")), name.removeprefix("D"))
+    return _WIDE.get(name) or (narrow if narrow in _FUNCTIONS else name)
+
+
+def _section(name: str) -> str:
+    number = _FUNCTIONS.get(plain(name))
+    if number is not None:
+        return f"FNC {number:02d}"
+    return {"STL": "4.1.1", "RET": "4.1.1", "P": "3.8", "I": "3.8"}.get(name, "4.1")
+
+
+FUNCTIONS = {name: _section(name) for name in H2U}  # where the manual has each instruction
+# What EC's manual has in a section -> where this one has it.
+SECTIONS = {
+    "1.1": "1", "3.1": "3", "3.2": "3.7", "3.2.1": "3", "3.3": "3.3", "4.1": "1.1", "4.4": "FNC 01", "5.1": "4.1", "5.2": "4.1",
+    "5.3": "4.1.1", "5.4": "3.5", "5.5": "3.6", "6.1.1": "FNC 08", "6.1.3": "3.8", "6.1.4": "FNC 00", "6.1.5": "FNC 06",
+    "6.1.9": "FNC 03", "6.1.11": "FNC 01", "6.1.12": "FNC 02", "7": "4.1.1", "8": "3.6", "9": "3.8",
+}  # fmt: skip
