@@ -75,7 +75,7 @@ class Trace(Part):
         parts += [
             s.text(middles[0], 39, "now", "ax b mid", id=f"{PREFIX}ha"),
             s.text(middles[1], 39, "", "ax b mid", id=f"{PREFIX}hb"),
-            s.text(LEFT - 14, 39, "s", "ax end"),
+            s.text(LEFT - 30, 39, "s", "ax end"),  # clear of the first figure
         ]
         for place, (lane, top) in enumerate(zip(self.scope.lanes, tops, strict=False)):
             parts.append(self._lane(place, lane, top, middles))

@@ -166,3 +166,10 @@ def test_without_a_kernel_the_past_stays_readable_and_rests(bench, real):
     bench.js("() => { model.gone = true; document.querySelector('[data-testid=scan]').click(); }")
     expect(bench["history"]).to_have_attribute("aria-disabled", "true")
     expect(bench["history"].locator(".ev.s")).to_have_count(2)
+
+
+@pytest.mark.parametrize("width", [700, 900, 1280])
+def test_the_bar_of_the_past_has_the_row_for_itself(bench, real, width):
+    bench.page.set_viewport_size({"width": width, "height": 900})
+    bench.connect(real.panel("transport"))
+    assert bench["history"].bounding_box()["width"] > width - 200

@@ -1,8 +1,12 @@
 """What holds for every panel: names, keys, focus, contrast in a host that is not Jupyter, states without colour, and the last state without a kernel."""
 
+import io
+import re
+
 import pytest
 from ecsim_exercises import conveyor
 from ecsim_widgets.lab import PARTS
+from PIL import Image
 
 pytestmark = pytest.mark.browser
 
@@ -159,3 +163,106 @@ def test_what_has_the_focus_keeps_it_when_the_columns_change(bench, conveyor_lab
         bench.page.wait_for_function("(columns) => document.querySelector('.lab').dataset.columns === columns", arg=columns)
         assert bench.js("() => document.activeElement.dataset.testid") == "step-S20"
         assert bench["ladder"].locator(".ladder-scroll").evaluate("(body) => body.scrollTop") == 500
+
+
+# -- a host that is not Jupyter: VS Code sets --vscode-* and a class on the body, and puts widgets on white whatever its theme
+
+VSCODE = {
+    "vscode-light": {"editor-background": "#ffffff", "editor-foreground": "#3b3b3b", "font-family": "sans-serif"},
+    "vscode-dark": {"editor-background": "#1f1f1f", "editor-foreground": "#cccccc", "font-family": "sans-serif"},
+    "vscode-high-contrast": {"editor-background": "#000000", "editor-foreground": "#ffffff", "font-family": "sans-serif"},
+    "vscode-high-contrast vscode-high-contrast-light": {
+        "editor-background": "#ffffff",
+        "editor-foreground": "#292929",
+        "font-family": "sans-serif",
+    },
+}
+HOST = """([classes, variables]) => {
+  document.body.removeAttribute('data-jp-theme-light');
+  document.body.className = classes;
+  document.body.style.background = '#ffffff';
+  for (const [name, value] of Object.entries(variables)) document.documentElement.style.setProperty(`--vscode-${name}`, value);
+}"""
+WORDS = """() => {
+  const clipped = (box, node) => {
+    for (let over = node.parentElement; over; over = over.parentElement) {
+      if (getComputedStyle(over).overflow === 'visible') continue;
+      const edge = over.getBoundingClientRect();
+      box = { left: Math.max(box.left, edge.left), right: Math.min(box.right, edge.right), top: Math.max(box.top, edge.top), bottom: Math.min(box.bottom, edge.bottom) };
+    }
+    return box;
+  };
+  const found = [];
+  const walker = document.createTreeWalker(document.querySelector('.ec-root'), NodeFilter.SHOW_TEXT);
+  for (let text = walker.nextNode(); text; text = walker.nextNode()) {
+    const node = text.parentElement;
+    if (!text.data.trim() || !node.getBoundingClientRect().width || !node.checkVisibility({ visibilityProperty: true, opacityProperty: true }) || node.closest('[disabled], [aria-disabled=true], .visually-hidden, option, title, style')) continue;
+    const style = getComputedStyle(node);
+    const range = document.createRange();
+    range.selectNodeContents(text);
+    const { left, right, top, bottom } = clipped(range.getBoundingClientRect(), node);
+    if (right - left < 4 || bottom - top < 4) continue;
+    found.push({ text: text.data.trim(), colour: node instanceof SVGElement ? style.fill : style.color, box: [left + scrollX, top + scrollY, right + scrollX, bottom + scrollY].map(Math.round) });
+  }
+  for (const field of document.querySelectorAll('.ec-root input:placeholder-shown')) {
+    if (!field.checkVisibility()) continue;
+    const { left, right, top, bottom } = field.getBoundingClientRect();
+    found.push({ text: field.placeholder, colour: getComputedStyle(field, '::placeholder').color, box: [left + 3, top + 3, right - 3, bottom - 3].map(Math.round) });
+  }
+  return found;
+}"""
+BARE = """(on) => {
+  document.head.querySelector('#bare')?.remove();
+  if (on) document.head.insertAdjacentHTML('beforeend', `<style id="bare">.ec-root, .ec-root * { color: transparent !important; transition: none !important; }
+    .ec-root svg text { fill: transparent !important; } .ec-root ::placeholder { color: transparent !important; }</style>`);
+}"""
+
+
+def luminance(colour):
+    """The relative luminance of red, green and blue of 0 to 255, as WCAG 2 defines it."""
+    linear = [each / 12.92 if each <= 0.04045 else ((each + 0.055) / 1.055) ** 2.4 for each in (value / 255 for value in colour)]
+    return sum(weight * value for weight, value in zip((0.2126, 0.7152, 0.0722), linear, strict=True))
+
+
+def contrast(one, other):
+    """The contrast of two colours, 1 to 21."""
+    darker, lighter = sorted((luminance(one), luminance(other)))
+    return (lighter + 0.05) / (darker + 0.05)
+
+
+def test_the_measure_of_contrast():
+    assert contrast((0, 0, 0), (255, 255, 255)) == pytest.approx(21)
+    assert contrast((118, 118, 118), (255, 255, 255)) == pytest.approx(4.54, abs=0.005)  # the darkest grey that WCAG names for white
+
+
+def picture(page):
+    """The page as it looks."""
+    return Image.open(io.BytesIO(page.screenshot(full_page=True, animations="disabled"))).convert("RGB")
+
+
+def faint(page):
+    """The words whose contrast with what lies behind them is less than 4.5 to 1."""
+    words = page.evaluate(WORDS)
+    page.evaluate(BARE, True)
+    behind = picture(page)
+    page.evaluate(BARE, False)
+    found = []
+    for word in words:
+        area = behind.crop(word["box"])
+        _, ground = max(area.getcolors(area.width * area.height))
+        red, green, blue, *alpha = (float(each) for each in re.findall(r"[\d.]+", word["colour"]))
+        share = alpha[0] if alpha else 1.0
+        colour = [share * own + (1 - share) * under for own, under in zip((red, green, blue), ground, strict=True)]
+        if contrast(colour, ground) < 4.5:
+            found.append((word["text"], word["colour"], ground, round(contrast(colour, ground), 2)))
+    assert words
+    return found
+
+
+def test_everything_can_be_read_in_vs_code(shown):
+    for classes, variables in VSCODE.items():
+        shown.js(HOST, [classes, variables])
+        shown.frame()
+        paper = shown.js("() => getComputedStyle(document.querySelector('.ec-root')).backgroundColor")
+        assert (luminance(map(int, re.findall(r"\d+", paper))) < 0.1) == (classes in ("vscode-dark", "vscode-high-contrast"))
+        assert (classes, faint(shown.page)) == (classes, [])
