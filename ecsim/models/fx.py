@@ -40,11 +40,11 @@ _BITS = frozenset("XYMS")
 _RELAYS = {
     "running": 8000, "not running": 8001, "first scan": 8002, "not first scan": 8003, "error": 8004, "battery low": 8005,
     "clock 10 ms": 8011, "clock 100 ms": 8012, "clock 1 s": 8013, "clock 1 min": 8014,
-    "zero": 8020, "borrow": 8021, "carry": 8022, "move back": 8024, "hold": 8026, "sixteen": 8027, "complete": 8029,
+    "zero": 8020, "borrow": 8021, "carry": 8022, "backwards": 8024, "hold": 8026, "sixteen": 8027, "complete": 8029,
     "battery lamp off": 8030, "hold memory": 8033, "outputs off": 8034, "constant scan": 8039,
     "hold transitions": 8040, "transfer start": 8041, "start pulse": 8042, "outputs kept": 8045, "hexadecimal": 8167,
     "step active": 8046, "monitor steps": 8047, "annunciator": 8048, "monitor annunciators": 8049,
-    "system error": 8061, "fault": 8067, "fault latch": 8068, "exchange": 8160, "bytewise": 8161, "hexadecimal shift": 8168,
+    "system error": 8061, "fault": 8067, "fault latch": 8068, "exchange": 8160, "bytewise": 8161, "unconverted": 8168,
     "counter direction": 8000,  # M(8000 + n) for C(n)
     **fx_fast.RELAYS, **fx_serial.RELAYS,
 }  # fmt: skip
@@ -91,6 +91,9 @@ H2U = Model(
     special_words="D",
     first_special=8000,
     local_areas=(),
+    index_pairs={"Z": "V"},
+    least_wide_digits=1,
+    annunciators=range(900, 1000),
     high_word_first=False,
     operand_ranges={"DCOUNTER": (200, 234), "HCOUNTER": (235, 255)},
     spelling=fx_spelling.H2U,

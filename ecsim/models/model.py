@@ -196,6 +196,11 @@ class Model:
     step_surcharge: tuple[str, int] | None = None  # contacts on this area from this number on are one step longer
     spelling: dict[str, str | By] = field(default_factory=dict)  # the family's name of each instruction -> TABLE's; empty: TABLE's own
     operand_ranges: dict[str, tuple[int, int]] = field(default_factory=dict)  # kind of operand -> its numbers, where they differ from the usual
+    functions: dict[str, str] = field(default_factory=dict)  # name of an instruction -> where the family's manual has it
+    sections: dict[str, str] = field(default_factory=dict)  # section of EC's manual -> the family's on the same; empty: the same manual
+    levels: bool = False  # MC has a level: the end of one ends those inside it
+    strict_steps: bool = False  # what may stand in the conditions of transitions where ways part or join is limited
+    overlap: bool = False  # in the scan of a transition the step that is left stays ON beside the one that begins
     pulse_suffix: str = ""  # behind a mnemonic: executed only in the scan in which its flow rises
     fault_record: int = 5  # so many registers from "faults" on keep the codes of the last errors
     initial_registers: dict[int, int] = field(default_factory=dict)
@@ -223,6 +228,13 @@ class Model:
     def spelled(self, key: str) -> list[str]:
         """The names that this model has for an instruction of TABLE."""
         return [name for name, meant in self.spelling.items() if key in (meant.keys if isinstance(meant, By) else (meant,))]
+
+    def section(self, section: str) -> str:
+        """Where this family's manual has what EC's has in a section; "" where it has nothing."""
+        if not self.sections or not section[:1].isdigit():
+            return section
+        found = max((known for known in self.sections if section == known or section.startswith(f"{known}.")), key=len, default="")
+        return self.sections.get(found, "")
 
     def timer_base_us(self, number: int) -> int:
         """The time unit of a timer in microseconds."""
