@@ -81,6 +81,7 @@ class SteppingEngine:
             flow, writes, order = self.trace.flow, self.trace.writes, self.trace.order
             for position in self.walk(unit):
                 order.append((position, flow[position], len(writes)))
+            self.keep_locals(unit)
             return self.halted
         return self._bare(self.entries[unit.upper()])
 
@@ -127,6 +128,11 @@ class SteppingEngine:
                 yield stage.position
             place = stage.control(flow)
         self.halted = place == HALT
+
+    def keep_locals(self, unit: str) -> None:
+        """Record what the areas of a unit's own hold at its end."""
+        lists = self.memory.lists
+        self.trace.locals[unit] = {area: lists[area][:] for area in self.program.model.local_areas}
 
     def values(self, targets) -> list[tuple[str, str, int, int]]:
         """The present values of what an instruction may write, as (list, area, number, value)."""
@@ -445,6 +451,8 @@ class _Builder(Writer):
         finish = self._noted(made, "leave", self.instruction.position, tuple(results))
 
         def back(_) -> int:
+            if engine.recording:
+                engine.keep_locals(callee.name)
             finish()
             return after
 
