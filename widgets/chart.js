@@ -107,9 +107,11 @@ panels.chart = (place, layout, page, view) => {
     if (step.then.length) lines.push(["then", step.then.map((one) => `<span class="mono">${escaped(one)}</span>`).join(" or ")]);
     const markup = lines.map(([word, text]) => `<dt>${word}</dt><dd>${text}</dd>`).join("");
     const [ways, active_now] = [step.ways ?? [], Boolean(now)];
-    const fires = ways.map((to) => `<button class="tool" data-act="fire" data-testid="fire-${to.join("-") || "end"}" data-to="${ways.length > 1 ? (to[0] ?? "") : ""}" title="Take this transition now, whether its condition holds or not (F)"${active_now ? "" : " disabled"}>${icon("fire")}Fire → <span class="mono">${escaped(to.join(" ") || "end")}</span></button>`).join("");
+    const fires = ways.map((to) => `<button class="tool" data-act="fire" data-testid="fire-${to.join("-") || "end"}" data-to="${ways.length > 1 ? (to[0] ?? "") : ""}" title="Take this transition now, whether its condition holds or not (F)"${active_now && !page.dead ? "" : " disabled"}>${icon("fire")}Fire → <span class="mono">${escaped(to.join(" ") || "end")}</span></button>`).join("");
     if (fired.dataset.markup !== fires) fired.innerHTML = fired.dataset.markup = fires;
-    set(section.querySelector('[data-act="break"]'), "aria-pressed", String(device in (state.breaks ?? {})));
+    const breaks = section.querySelector('[data-act="break"]');
+    set(breaks, "aria-pressed", String(device in (state.breaks ?? {})));
+    for (const button of [breaks, section.querySelector('[data-act="hold"]')]) button.disabled = page.dead;
     for (const [act, off] of [["set", active_now], ["reset", !active_now]]) section.querySelector(`[data-act="${act}"]`).disabled = off || page.dead;
     if (facts.dataset.markup !== markup) facts.innerHTML = facts.dataset.markup = markup;
   }
@@ -134,7 +136,10 @@ panels.chart = (place, layout, page, view) => {
           .map(([time_us, from, to, why]) => `<li><span>${seconds(time_us)}</span><span><span class="mono">${escaped(from && to ? `${from} → ${to}` : to || `${from} ended`)}</span><small>${escaped(why)}</small></span></li>`)
           .join("");
     },
-    rest: sizes.rest,
+    rest(dead) {
+      sizes.rest(dead);
+      explain();
+    },
     close: sizes.close,
   };
 };

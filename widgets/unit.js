@@ -78,7 +78,7 @@ panels.unit = (place, layout, page, view) => {
         const from = count - 1 - pots;
         const keys = POSITIONS.map((position, key) => `<button class="knobkey" role="radio" data-mode="${position}" data-testid="mode-${position}" data-row="${row}" data-col="${from - 1 + key}" tabindex="-1" style="left:${(key * 100) / 3}%">${position}</button>`);
         const knob = last ? `<div class="knobcell" style="grid-column:${from}/span 2" role="radiogroup" aria-label="Mode switch" data-testid="mode">${KNOB}${keys.join("")}</div>${potentiometers(from + 2)}` : "";
-        const brand = last ? `<div class="brand plate"><b>${escaped(model)}</b>${inputs.length} in · ${outputs.length} out</div>` : "";
+        const brand = last ? `<div class="brand plate"><b>${escaped(model)}</b>${inputs.length} in · ${outputs.length} out<span class="stamp"></span></div>` : "";
         return `<div class="cols outs${last ? " last" : ""}">${list.map((point, col) => `${head(point, col)}</div>`).join("")}${knob}${brand}</div>`;
       })
       .join("");
@@ -102,6 +102,12 @@ panels.unit = (place, layout, page, view) => {
       }
     });
     show(state);
+    rest(page.dead);
+    view.stamp();
+  }
+  function rest(dead) {
+    if (dead) plate.close();
+    for (const button of place.querySelectorAll(".control, .knobkey, .potcell")) set(button, "aria-disabled", dead ? "true" : null);
   }
 
   // A control says what the hand did and waits for the unit to tell what came of it.
@@ -261,10 +267,7 @@ panels.unit = (place, layout, page, view) => {
         cell.pulse = setTimeout(() => set(cell, "data-pulsed", null), HOLD_MS);
       }
     },
-    rest(dead) {
-      if (dead) plate.close();
-      for (const button of place.querySelectorAll(".control, .knobkey, .potcell")) set(button, "aria-disabled", dead ? "true" : null);
-    },
+    rest,
     close() {
       sizes.disconnect();
       plate.end();

@@ -172,4 +172,4 @@ def test_without_a_kernel_the_past_stays_readable_and_rests(bench, real):
 def test_the_bar_of_the_past_has_the_row_for_itself(bench, real, width):
     bench.page.set_viewport_size({"width": width, "height": 900})
     bench.connect(real.panel("transport"))
-    assert bench["history"].bounding_box()["width"] > width - 200
+    assert bench["history"].bounding_box()["width"] > width - 240

@@ -266,3 +266,45 @@ def test_everything_can_be_read_in_vs_code(shown):
         paper = shown.js("() => getComputedStyle(document.querySelector('.ec-root')).backgroundColor")
         assert (luminance(map(int, re.findall(r"\d+", paper))) < 0.1) == (classes in ("vscode-dark", "vscode-high-contrast"))
         assert (classes, faint(shown.page)) == (classes, [])
+
+
+# -- the last state: what a page shows that was saved and opened again, with no kernel behind it
+
+SAVED = "() => JSON.parse(JSON.stringify({ face: model.values.face, last: model.values.last }))"
+REOPENED = """(values) => {
+  const send = Model.prototype.send;
+  Model.prototype.send = () => { throw new Error('there is no comm'); };
+  try { show(values); } finally { Model.prototype.send = send; }
+  model.gone = true;
+}"""
+SHOWN = """() => {
+  const root = document.querySelector('.ec-root');
+  const words = [...root.querySelectorAll('*')].filter((node) => node.childNodes.length && [...node.childNodes].some((each) => each.nodeType === 3 && each.data.trim()));
+  const own = (node) => [...node.childNodes].filter((each) => each.nodeType === 3).map((each) => each.data.trim()).join(' ');
+  return {
+    words: words.filter((node) => node.getBoundingClientRect().width && !node.closest('.stamp, .chip, .history .end, option')).map(own),
+    states: [...root.querySelectorAll('[data-on], [data-forced], [aria-checked=true], [data-state], .flow, .active, .on')]
+      .map((node) => [node.dataset.testid ?? node.getAttribute('class'), node.getAttribute('aria-label')]),
+  };
+}"""
+AWAKE = """() => [...document.querySelectorAll('.ec-root :is(button, input, select, textarea, [role=slider], [role=switch])')]
+  .filter((node) => node.getBoundingClientRect().width && !node.disabled && node.getAttribute('aria-disabled') !== 'true' && !node.readOnly)
+  .map((node) => node.dataset.testid ?? node.className)"""
+LOOKING = {"seconds", "follow", "network", "breaks", "text"}  # what only looks still works, and a text can be copied
+
+
+def test_opened_again_without_a_kernel_it_shows_the_last_state_and_says_so(shown):
+    before, saved = shown.js(SHOWN), shown.js(SAVED)
+    assert before["words"]
+    shown.js(REOPENED, saved)
+    shown.frame()
+    assert shown.js("() => document.querySelector('.ec-root').hasAttribute('data-dead')")
+    scan = f"{shown.panel.rig.plc.scans:,}"
+    told = shown["chip"] if shown.key == "transport" else shown["ec"].locator(".stamp")
+    assert told.first.inner_text() == (
+        "Not connected: the last state" if shown.key == "transport" else f"last state \N{MIDDLE DOT} scan {scan}"
+    )
+    after = shown.js(SHOWN)
+    assert after["words"] == before["words"]
+    assert after["states"] == before["states"]
+    assert set(shown.js(AWAKE)) <= LOOKING
