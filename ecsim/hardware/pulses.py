@@ -140,6 +140,7 @@ class PulseOutputs(Unit):
         for axis in self.axes:
             if axis.claim == claim:
                 axis.claim, axis.completes, axis.warning, axis.free = None, False, 0, now
+                self._tell(False)
                 axis.home = None
                 if axis.ramps is not None and axis.segments:
                     self._slow(axis, axis.ramps, axis.ramps.base, now)
@@ -246,6 +247,12 @@ class PulseOutputs(Unit):
                 if axis.completes:
                     self._complete(axis)
 
+    def _tell(self, complete: bool) -> None:
+        """Where a relay tells of the end of pulses, it does so until the flow of their instruction goes."""
+        relay = self.model.relays.get("complete")
+        if relay is not None:
+            self._bits()[relay] = complete
+
     def sense(self, axis: Axis, now: int) -> None:
         """A ZRN has begun: it may stand on its near-point switch already."""
         dog = axis.home.dog if axis.home is not None else None
@@ -279,9 +286,7 @@ class PulseOutputs(Unit):
 
     def _complete(self, axis: Axis) -> None:
         """The pulses of a command, or a return to the origin, are over."""
-        complete = self.model.relays.get("complete")
-        if complete is not None:
-            self._bits()[complete] = True
+        self._tell(True)
         self.interrupts.fire(self._map(axis).event)
 
     # -- what was put out ---------------------------------------------------------------------------------------

@@ -24,6 +24,7 @@ from . import (  # noqa: F401
     fx_float,
     fx_flow,
     fx_handy,
+    fx_pulses,
     fx_move,
     fx_shifts,
     highspeed,

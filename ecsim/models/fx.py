@@ -4,7 +4,7 @@ import re
 from dataclasses import replace
 
 from ..devices import Constant, OperandError, Syntax
-from . import fx_fast, fx_serial, fx_spelling
+from . import fx_fast, fx_pulses, fx_serial, fx_spelling
 from .model import Area, Model
 
 _CONSTANT = re.compile(
@@ -46,16 +46,16 @@ _RELAYS = {
     "step active": 8046, "monitor steps": 8047, "annunciator": 8048, "monitor annunciators": 8049,
     "system error": 8061, "fault": 8067, "fault latch": 8068, "exchange": 8160, "bytewise": 8161, "unconverted": 8168,
     "counter direction": 8000,  # M(8000 + n) for C(n)
-    **fx_fast.RELAYS, **fx_serial.RELAYS,
+    **fx_fast.RELAYS, **fx_pulses.RELAYS, **fx_serial.RELAYS,
 }  # fmt: skip
 _REGISTERS = {
     "watchdog": 8000, "capacity": 8002, "scan time": 8010, "least scan time": 8011, "greatest scan time": 8012, "clock": 8013,
     "input filter": 8020, "constant scan": 8039, "active steps": 8040, "annunciator": 8049,
-    "system error": 8061, "faults": 8067, "fault latch": 8068, **fx_serial.REGISTERS,
+    "system error": 8061, "faults": 8067, "fault latch": 8068, **fx_pulses.REGISTERS, **fx_serial.REGISTERS,
 }  # fmt: skip
 # What the system alone writes.
 _READ_ONLY_RELAYS = {
-    *range(8000, 8006), *range(8011, 8015), 8046, 8048, *range(8060, 8068), *range(8246, 8256), *fx_serial.READ_ONLY_RELAYS
+    *range(8000, 8006), *range(8011, 8015), 8046, 8048, *range(8060, 8068), *range(8246, 8256), *fx_pulses.BUSY, *fx_serial.READ_ONLY_RELAYS
 }  # fmt: skip
 _READ_ONLY_REGISTERS = {8002, *range(8010, 8013), *range(8013, 8020), *range(8040, 8048), 8049, *range(8060, 8070)}
 
@@ -95,7 +95,7 @@ H2U = Model(
     least_wide_digits=1,
     annunciators=range(900, 1000),
     high_word_first=False,
-    operand_ranges={"DCOUNTER": (200, 234), "HCOUNTER": (235, 255)},
+    operand_ranges={"DCOUNTER": (200, 234), "HCOUNTER": (235, 255), "PULSE": (0, 4)},
     spelling=fx_spelling.H2U,
     functions=fx_spelling.FUNCTIONS,
     sections=fx_spelling.SECTIONS,
@@ -105,7 +105,9 @@ H2U = Model(
     pulse_suffix="P",
     fault_record=1,
     base_units=((10, 10), (16, 16), (24, 16), (32, 32), (36, 24), (40, 40), (64, 64)),
+    initial_registers=fx_pulses.INITIAL,
     **fx_fast.H2U,
+    **fx_pulses.H2U,
     **fx_serial.H2U,
 )  # fmt: skip
 
@@ -114,5 +116,7 @@ H1U = replace(
     name="H1U",
     areas=_areas(m=1536),
     spelling=fx_spelling.H1U,
+    operand_ranges=H2U.operand_ranges | {"PULSE": (0, 1)},
+    **fx_pulses.H1U,
     base_units=((8, 6), (14, 10), (16, 14), (24, 16), (36, 24), (40, 40)),
 )

@@ -122,7 +122,15 @@ H2U: dict[str, str | By] = {
     "DFLT": "FX:DFLT",
     # FNC 50 to 59: high-speed processing
     "REFF": "FX:REFF",
+    "REF": "REF",
+    "REFF": "FX:REFF",
     "MTR": "FX:MTR",
+    "SPD": "FX:SPD",
+    "PLSY": "FX:PLSY",
+    "DPLSY": "FX:DPLSY",
+    "PWM": "PWM",
+    "PLSR": "FX:PLSR",
+    "DPLSR": "FX:DPLSR",
     # FNC 60 to 69: convenient instructions
     "IST": "FX:IST",
     "SER": "FX:SER",
@@ -179,6 +187,15 @@ H2U: dict[str, str | By] = {
     "SWAP": "SWAP",
     "DSWAP": "FX:DSWAP",
     # FNC 155 to 159: positioning
+    "DABS": "FX:DABS",
+    "ZRN": "FX:ZRN",
+    "DZRN": "FX:DZRN",
+    "PLSV": "FX:PLSV",
+    "DPLSV": "FX:DPLSV",
+    "DRVI": "FX:DRVI",
+    "DDRVI": "FX:DDRVI",
+    "DRVA": "FX:DRVA",
+    "DDRVA": "FX:DDRVA",
     # FNC 160 to 169: clock
     "TCMP": "FX:TCMP",
     "TZCP": "FX:TZCP",
