@@ -155,7 +155,7 @@ class Syntax:
         if operand is None:
             if len(text) > 64:
                 return None
-            operand = self.constant(text) or self._pointer(text) or self._device(text) or self._indexed_constant(text)
+            operand = self.constant(text) or self._pointer(text) or self._indexed_constant(text) or self._device(text)
             if operand is not None and len(self._known) < 100_000:
                 self._known[text] = operand
         return operand
