@@ -109,7 +109,7 @@ def one_to_256(s1, d, s2):
     return None
 
 
-@value("ASC", "S:TEXT*8 bytewise -> D:WORD[D C T V Z]*{8 if bytewise else 4}", steps=19, section="6.5.16", models=("EC10",))
+@value("ASC", "S:TEXT*8 bytewise -> D:WORD[D C T V Z]*{8 if bytewise else 4}", steps=19, section="6.5.16", models=("EC10",), pulsed=False)
 def asc(s, bytewise):
     """The words from D on become the ASCII codes of up to eight characters, the rest zeros.
 

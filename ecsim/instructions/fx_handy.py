@@ -70,8 +70,17 @@ def ser(s1, s2, n):
     return [len(equal), *((equal[0], equal[-1]) if equal else (0, 0)), last[min(s1)], last[max(s1)]]
 
 
-@value("FX:ABSD", f"S1:INT[{_WORDS}]*{{2*N}} S2:INT[C] >D:BOOL[Y M S]*N N:INT[const]=1..64", steps=9, section="FNC 62", models=FX)
-@value("FX:DABSD", f"S1:DINT[{_WORDS}]*{{2*N}} S2:DINT[C] >D:BOOL[Y M S]*N N:DINT[const]=1..64", steps=17, section="FNC 62", models=FX)
+@value(
+    "FX:ABSD", f"S1:INT[{_WORDS}]*{{2*N}} S2:INT[C] >D:BOOL[Y M S]*N N:INT[const]=1..64", steps=9, section="FNC 62", models=FX, pulsed=False
+)
+@value(
+    "FX:DABSD",
+    f"S1:DINT[{_WORDS}]*{{2*N}} S2:DINT[C] >D:BOOL[Y M S]*N N:DINT[const]=1..64",
+    steps=17,
+    section="FNC 62",
+    models=FX,
+    pulsed=False,
+)
 def absd(s1, s2, n):
     """A cam drum: each of the N bits from D on is ON while the counter S2 stands from its first value of the table at S1 to below its second one.
 
