@@ -19,6 +19,7 @@ from .history import History
 from .outside import OutsideLine
 from .plc import Plc
 from .record import Recording
+from .sensors import ALL, Sensors
 from .system import within
 from .views.flows import Flow, Step, Transition, parts
 
@@ -89,6 +90,8 @@ class Session:
     def __init__(self, plc: Plc, plant: Plant | None = None, name: str = "lab", speed: float | None = 1.0, record: Recording | None = None):
         self.plc, self.plant, self.name = plc, plant, name
         self.recording = record
+        carried = getattr(plant, "sensors", None)
+        self.sensors = carried if isinstance(carried, Sensors) else Sensors(plc, plant)
         self.trace_frames = False  # whether the last scan before observers are called is traced; the others run at full speed
         self.refused = ""  # why the last action was not done
         self.breakpoints = Breakpoints(plc, self._arm)
@@ -176,7 +179,7 @@ class Session:
     def _enter(self, sensors: dict[str, int], now: int) -> None:
         """Put what the plant says on the inputs, and into the registers that it writes."""
         plc = self.plc
-        for name, level in sensors.items():
+        for name, level in self.sensors.pass_on(sensors, now).items():
             if name in self._inputs:
                 plc.inputs.set(self._inputs[name], level, now)
             elif name in self._signals:
@@ -333,15 +336,17 @@ class Session:
                     self.step_since.pop(f"S{number}", None)
 
     def _take(self) -> tuple:
-        plant = plant_state(self.plant)
+        plant = plant_state(self.plant), self.sensors.state()
         return self.plc.snapshot(), plant, self._plant_on, dict(self.step_since), list(self.log), self.plc.transitions_held
 
     def _put(self, frame: tuple) -> None:
         snapshot, plant, on, since, log, held = frame
         self.plc.restore(snapshot)
         self._bind()
-        restore_plant(self.plant, plant)
+        restore_plant(self.plant, plant[0])
+        self.sensors.restore(plant[1])
         self._plant_on, self.plc.transitions_held = on, held
+        self.sensors.connected = on
         self._last_driven = self._last_sensors = None
         self.step_since = dict(since)
         self.log = deque(log, maxlen=LOG)
@@ -583,7 +588,27 @@ class Session:
 
     def _switch_plant(self, on: bool) -> None:
         self._plant_on = on
-        self._last_sensors = None  # a sensor that was overridden by hand is driven again
+        self._last_sensors = None
+        self.sensors.connected = on
+        self.sensors.renew()  # a sensor that was overridden by hand is driven again
+
+    @property
+    def faults(self) -> list[str]:
+        """The faults of machine and sensors that are switched in, as `fail` takes them."""
+        return self.sensors.active
+
+    def fail(self, fault: str) -> None:
+        """Switch a fault in before the next scan: one of the machine's own ("jammed"), or of a sensor, by device or name.
+
+        "X1 stuck 0", "X1 inverted", "X1 delayed 0.5" (seconds), "X1 bounces 30" (ms; a second number is the seed). A sensor has one
+        fault at a time. Raises EcsimError for one that there is not.
+        """
+        self.sensors.read(fault)
+        self.post(lambda plc: self.sensors.fail(fault))
+
+    def mend(self, fault: str = ALL) -> None:
+        """Switch out before the next scan a fault of the machine's own, that of a sensor ("X1", "InLift"), or all of them."""
+        self.post(lambda plc: self.sensors.mend(fault))
 
     # -- actions and observers ------------------------------------------------------------------------------------
 

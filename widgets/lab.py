@@ -19,7 +19,7 @@ from .ladder import Ladder
 from .machine import Machine
 from .microscope import Microscope
 from .panel import Panel, Part
-from .rig import Rig, Terminals
+from .rig import Rig
 from .timers import Timers
 from .trace import Trace
 from .transport import Transport
@@ -65,13 +65,12 @@ class Lab(Panel):
         plc = model if isinstance(model, Plc) else Plc(model)
         if program is not None:
             plc.load(program)
-        terminals = Terminals(plant) if plant is not None else None
-        session = Session(plc, plant=terminals, name=name, speed=speed)
+        session = Session(plc, plant=plant, name=name, speed=speed)
         if name in self._labs:
             self._labs[name].close()
         self.name = name
         title = title or re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(plant).__name__) if plant is not None else ""
-        rig = Rig(plc, session, terminals=terminals, picture=picture, controls=controls, title=title, devices=devices, traced=trace)
+        rig = Rig(plc, session, picture=picture, controls=controls, title=title, devices=devices, traced=trace)
         super().__init__(rig)
         self._labs[name] = self
         session.trace_frames = True

@@ -5,10 +5,9 @@ Nothing here knows Jupyter. A panel reads the rig when it makes a frame; a messa
 
 from __future__ import annotations
 
-import copy
 import re
 from collections import deque
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -33,44 +32,6 @@ class Moment(NamedTuple):
     outputs: Mapping[str, int]
 
 
-class Terminals:
-    """The terminals between unit and machine; in the session it stands for the plant.
-
-    An input belongs to the hand until the machine drives it; a driven one can be taken over ("stuck") and given back.
-    """
-
-    def __init__(self, plant: Any):
-        self.plant = plant
-        self.wiring: Mapping[str, Any] = plant.wiring
-        self.stuck: dict[str, int] = {}
-        self.counted = getattr(plant, "counted", frozenset())  # outputs of which it gets the number of pulses
-        self.inputs: dict[str, int] = {}  # what its sensors said last; the session asks before any time passes
-
-    @property
-    def driven(self) -> Collection[str]:
-        """The inputs that the machine drives."""
-        return self.inputs.keys()
-
-    def step(self, seconds: float, outputs: Mapping[str, int]) -> dict[str, int]:
-        """Move the machine on; gives the levels at the terminals that it drives."""
-        self.inputs = self.plant.step(seconds, outputs)
-        return {**self.inputs, **self.stuck} if self.stuck else self.inputs
-
-    def state(self) -> tuple:
-        """Everything that changes, as a value; `restore` takes it back."""
-        plant = self.plant.state() if hasattr(self.plant, "state") else copy.deepcopy(vars(self.plant))
-        return plant, dict(self.stuck), dict(self.inputs)
-
-    def restore(self, state: tuple) -> None:
-        """Make everything what it was when `state` was taken."""
-        plant, stuck, inputs = state
-        if hasattr(self.plant, "restore"):
-            self.plant.restore(plant)
-        else:
-            vars(self.plant).update(copy.deepcopy(plant))
-        self.stuck, self.inputs = dict(stuck), dict(inputs)
-
-
 class Rig:
     """One simulation as its panels see it."""
 
@@ -79,15 +40,14 @@ class Rig:
         plc: Any,
         session: Any,
         *,
-        terminals: Terminals | None = None,
         picture: Any = None,
         controls: Mapping[str, str] | None = None,
         title: str = "Machine",
         devices: Iterable[str] = (),
         traced: Iterable[str] = (),
     ):
-        self.plc, self.session, self.terminals = plc, session, terminals
-        self.wiring = terminals.wiring if terminals else {}
+        self.plc, self.session, self.sensors = plc, session, session.sensors
+        self.wiring: Mapping[str, Any] = session.plant.wiring if session.plant is not None else {}
         self.picture, self.title = picture, title
         self.controls = dict(controls or {})
         self.refused = ""  # why the last thing asked for was not done
@@ -202,7 +162,7 @@ class Rig:
             "scan_us": plc.period_us,
             "recent": list(self.recent),
             "speed": session.speed,
-            "plant": session.plant_on if self.terminals else None,
+            "plant": session.plant_on if session.plant is not None else None,
             "can_back": session.history.first is not None and session.history.first < plc.scans,
             "error": f"{type(session.error).__name__}: {session.error}" if session.error else "",
             "refused": self.refused or session.refused,
@@ -221,7 +181,7 @@ class Rig:
             if not device.startswith("Y")
         }
         outputs = {device: self.bit(device) for device in self.wiring if device.startswith("Y")}
-        return Moment(self.terminals.plant, inputs, outputs)
+        return Moment(self.session.plant, inputs, outputs)
 
     # -- steps --------------------------------------------------------------------------------------------------
 
@@ -249,9 +209,10 @@ class Rig:
 
     def by(self, device: str) -> str:
         """Who drives an input: "hand", "machine" or "stuck"."""
-        if not self.session.plant_on or device not in self.terminals.driven:
+        if not self.session.plant_on or device not in self.sensors.says:
             return "hand"
-        return "stuck" if device in self.terminals.stuck else "machine"
+        fault = self.sensors.faults.get(device)
+        return "stuck" if fault is not None and fault.kind == "stuck" else "machine"
 
     # -- what the page may do -----------------------------------------------------------------------------------
 
@@ -272,29 +233,19 @@ class Rig:
 
     def connect(self, on: bool) -> None:
         """Connect the machine to the terminals, or leave them to the hand."""
-        if self.terminals is not None:
-            self.post(lambda plc: self._connect(plc, on))
+        if self.session.plant is not None:
             self.session.plant_on = on
-
-    def _connect(self, plc: Any, on: bool) -> None:
-        self.terminals.stuck = {}
-        if on:
-            plc.set(self.terminals.inputs)
 
     def put(self, device: str, level: int) -> None:
         """Put a level on an input; one that the machine drives is taken over and held."""
         self.post(lambda plc: self._put(plc, device, level))
 
     def _put(self, plc: Any, device: str, level: int) -> None:
-        if self.by(device) != "hand":
-            self.terminals.stuck = {**self.terminals.stuck, device: level}
-        plc[device] = level
+        if self.by(device) == "hand":
+            plc[device] = level
+        else:
+            self.sensors.fail(f"{device} stuck {level}")
 
     def free(self, device: str) -> None:
         """Give an input back to the machine."""
-        self.post(lambda plc: self._free(plc, device))
-
-    def _free(self, plc: Any, device: str) -> None:
-        if self.by(device) == "stuck":
-            self.terminals.stuck = {other: level for other, level in self.terminals.stuck.items() if other != device}
-            plc[device] = self.terminals.inputs[device]
+        self.post(lambda plc: self.sensors.mend(device))

@@ -17,7 +17,7 @@ class Transport(Part):
         self._events: list[list] = []
 
     def layout(self):
-        return {"watchdog_ms": self.rig.watchdog_ms, "plant": self.rig.terminals is not None}
+        return {"watchdog_ms": self.rig.watchdog_ms, "plant": self.rig.session.plant is not None}
 
     def frame(self):
         session = self.rig.session

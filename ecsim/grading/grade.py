@@ -10,6 +10,7 @@ from ..assembler import Program
 from ..errors import WATCHDOG, EcsimError, ProgramError
 from ..plc import Plc
 from ..project import Project
+from ..sensors import Sensors
 from ..session import Session, plant_state, restore_plant
 from .chart import chart_of
 from .choices import draw, simpler, usual
@@ -189,6 +190,11 @@ class Operated:
 
     def __init__(self, run: Run):
         self._run, self._plant, self._sensors = run, run.plant, dict(run.plant.inputs) if hasattr(run.plant, "inputs") else {}
+
+    @property
+    def sensors(self) -> Sensors:
+        """The faults of its sensors, which the operator switches too."""
+        return self._run.session.sensors
 
     def step(self, seconds: float, outputs: Mapping[str, int]) -> Mapping[str, int]:
         """Move the machine, then let the operator act. A step of no time only tells what the sensors said last."""

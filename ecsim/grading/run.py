@@ -24,7 +24,8 @@ class Do:
 
     It is done at second `at` of the run, or `after` seconds behind the moment at which `when` holds (now, if it does
     already), or behind the act before it. `set` maps devices, or names of the wiring, to values; with `hold` they go back to 0 after so many
-    seconds. `act(plc, plant)` is for all else: a fault of the machine, power off and on. Without any it only waits.
+    seconds. `fail` and `mend` switch a fault of machine or sensor in and out ("jammed", "X1 stuck 0"; see `Session.fail`).
+    `act(plc, plant)` is for all else, as power off and on. Without any it only waits.
     """
 
     set: Mapping[str, Any] = field(default_factory=dict)
@@ -32,6 +33,8 @@ class Do:
     when: str | None = None
     after: float = 0.0
     hold: float | None = None
+    fail: str = ""
+    mend: str = ""
     act: Callable[[Plc, Any], Any] | None = None
 
     def __post_init__(self):
@@ -238,6 +241,10 @@ class Run:
             self.plc.set(devices)
             if do.hold is not None:
                 self._releases = sorted([*self._releases, (done + max(1, self._scans(do.hold)), tuple(devices))])
+            if do.fail:
+                self.session.sensors.fail(do.fail)
+            if do.mend:
+                self.session.sensors.mend(do.mend)
             if do.act is not None:
                 do.act(self.plc, self.plant)
             self._position, self._since = self._position + 1, done

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 import pytest
-from ecsim_widgets.rig import Rig, Terminals
+from ecsim_widgets.rig import Rig
 
 from ecsim.plc import Plc
 from ecsim.session import Session
@@ -78,11 +78,10 @@ def make_rig():
     def make(plant=None, program=PROGRAM, **more):
         plc = Plc("EC20", scan_ms=10, input_filter_ms=0)
         plc.load(program)
-        terminals = Terminals(plant) if plant else None
-        session = Session(plc, plant=terminals, name="test")
+        session = Session(plc, plant=plant, name="test")
         session.trace_frames = True
         plc.run()
-        return Rig(plc, session, terminals=terminals, **more)
+        return Rig(plc, session, **more)
 
     return make
 
