@@ -308,3 +308,69 @@ def test_opened_again_without_a_kernel_it_shows_the_last_state_and_says_so(shown
     assert after["words"] == before["words"]
     assert after["states"] == before["states"]
     assert set(shown.js(AWAKE)) <= LOOKING
+
+
+# -- states without colour: in shades of grey, as an eye without cones or a copying machine sees it
+
+STATES = """PROGRAM MAIN
+LD X0
+OUT Y0
+TON T0 0
+LD SM1
+SET S0
+STL S0
+LD X0
+SET S20
+STL S20
+OUT Y2
+RET
+END_PROGRAM"""
+TOLD = {
+    "switch": "[data-testid=X0]",
+    "lamp of an input": "[data-testid=lamp-X0]",
+    "lamp of an output": "[data-testid=lamp-Y0]",
+    "forced lamp": "[data-testid=lamp-Y3]",
+    "contact": ".ladder-scroll [data-device=X0]",
+    "coil": ".ladder-scroll .coil[data-device=Y0]",
+    "step": "[data-testid=step-S20]",
+    "contact of a timer": "[data-testid=row-T0] .mini",
+    "bit in the table": "[data-testid=device-Y0] .value b",
+    "forced row": "[data-testid=device-Y3]",
+    "bit in the microscope": "[data-testid=micro-points] tr[data-device=Y0] td:nth-child(4) .bit",
+    "value in the trace": "svg.trace [id$=ga1]",
+    "breakpoint": "[data-testid=break]",
+}
+
+
+BOXES = """(told) => Object.fromEntries(Object.entries(told).map(([name, selector]) => {
+  const { left, top, right, bottom } = document.querySelector(selector).getBoundingClientRect();
+  return [name, [left, top, right, bottom].map(Math.round)];
+}))"""
+
+
+def test_every_state_is_told_without_colour(bench, make_lab):
+    made = make_lab(STATES, devices=["X0", "Y0", "Y3"], trace=["X0", "Y0"])
+    made.session.scan(2)
+    bench.page.set_viewport_size({"width": 1280, "height": 4000})
+    bench.connect(made)
+    bench["follow"].click()
+    bench["ladder"].locator(".ladder-scroll").evaluate("(body) => { body.scrollTop = 0 }")
+
+    def greys():
+        bench.settle()
+        page = picture(bench.page).convert("L")
+        return {name: page.crop(box) for name, box in bench.js(BOXES, TOLD).items()}
+
+    off = greys()
+    made.session.set("X0", 1)
+    made.plc.force("Y3", 1)
+    made.session.breakpoints.add("S0")
+    bench["step-S0"].click()
+    made.session.scan(2)
+    bench.settle()
+    bench["micro-place"].press("End")
+    on = greys()
+    for name, before in off.items():
+        after = on[name].resize(before.size)
+        differing = sum(abs(one - other) > 48 for one, other in zip(before.get_flattened_data(), after.get_flattened_data(), strict=True))
+        assert (name, differing > 40) == (name, True)  # pixels: a dot or a letter at least
