@@ -1,9 +1,13 @@
 """The table on a screw and its servo amplifier, under the positioning instructions (manual 6.17)."""
 
-import pytest
-from ecsim_exercises.axis import Axis, ServoAmplifier
+import re
+import xml.etree.ElementTree as xml
 
-from ecsim import Plc
+import pytest
+from ecsim_exercises.axis import PICTURE, Axis, ServoAmplifier
+from ecsim_exercises.plant import Moment
+
+from ecsim import EcsimError, Plc
 from ecsim.session import Session
 
 # The functions of 6.17.12: read the position at the start, jog both ways, return to the origin, go to two places, stop.
@@ -164,3 +168,112 @@ def test_in_a_session_the_plant_gets_the_pulses_and_a_step_back_takes_them_back(
     assert session.plant.position == pytest.approx(place)
     session.scan(50)
     assert session.plant.position == pytest.approx(126.0)
+
+
+def test_the_stop_is_told_once_for_each_time_it_is_reached():
+    axis = Axis(position=405.0)
+    for forward in (1, 1, 0, 1):  # 10 mm each: 5 are free
+        axis.step(0.1, {"Y0": 1000, "Y4": forward})
+    assert [(one.seconds, one.what) for one in axis.incidents] == [(0.1, "the table runs against its stop")]
+    assert axis.missed == 500 + 1000
+    axis.step(0.1, {"Y0": 100, "Y4": 1})
+    assert axis.missed == 1600
+    assert [one.seconds for one in axis.incidents] == [0.1, 0.5]
+
+
+def test_a_slipping_coupling_loses_a_quarter_of_the_way():
+    axis = Axis(position=100.0)
+    axis.fail("coupling slips")
+    axis.step(0.1, {"Y0": 1000, "Y4": 1})
+    assert axis.position == 107.5
+    assert axis.speed == 100.0  # of the motor
+    axis.fail("coupling slips", on=False)
+    axis.step(0.1, {"Y0": 1000, "Y4": 1})
+    assert axis.position == 117.5
+
+
+@pytest.mark.parametrize(("wire", "switch"), [("front wire", "X6"), ("rear wire", "X7")])
+def test_a_broken_wire_is_a_limit_switch_that_acts(wire, switch):
+    axis = Axis()
+    right = {"X3": 0, "X6": 1, "X7": 1}
+    assert axis.step(0.01, {"Y0": 0, "Y4": 0}) == right
+    axis.fail(wire)
+    assert axis.step(0.01, {"Y0": 0, "Y4": 0}) == right | {switch: 0}
+    axis.fail(wire, on=False)
+    assert axis.step(0.01, {"Y0": 0, "Y4": 0}) == right
+
+
+def test_a_fault_that_it_does_not_have_is_refused():
+    with pytest.raises(EcsimError, match="no fault 'rust'; it has coupling slips, front wire, rear wire"):
+        Axis().fail("rust")
+
+
+def test_a_hand_can_turn_the_screw():
+    axis = Axis(position=-25.0)
+    assert axis.step(0.01, {"Y0": 0, "Y4": 0})["X7"] == 0
+    axis.stand_at(7.0)
+    assert axis.step(0.01, {"Y0": 0, "Y4": 0}) == {"X3": 1, "X6": 1, "X7": 1}
+
+
+def test_the_way_back_takes_faults_and_place_along():
+    axis = Axis()
+    before = axis.state()
+    axis.fail("front wire")
+    axis.step(0.1, {"Y0": 1000, "Y4": 1})
+    assert axis.position == 130.0
+    axis.restore(before)
+    assert (axis.position, axis.faults, axis.speed) == (120.0, frozenset(), 0.0)
+    assert axis.step(0.1, {"Y0": 0, "Y4": 0}) == {"X3": 0, "X6": 1, "X7": 1}
+
+
+def shown(axis, pulses=0, forward=0, **lamps):
+    outputs = {"Y0": pulses, "Y4": forward, "Y5": 0, "Y6": 0, **lamps}
+    return PICTURE.state(Moment(axis, {"X0": 1, "X1": 0, "X2": 0, "X4": 0, **axis.step(0.1, outputs)}, outputs))
+
+
+def lit(state):
+    return {key.rsplit(":", 1)[0] for key, value in state.items() if key.endswith(":class") and value.split()[-1:] == ["on"]}
+
+
+def moved(state, part):
+    return tuple(map(float, re.match(r"translate\(([-\d.]+)[ ,]([-\d.]+)\)", state[f"{part}:transform"]).groups()))
+
+
+def test_every_entry_of_the_picture_has_its_element():
+    ids = {element.get("id") for element in xml.fromstring(PICTURE.svg("p-")).iter()}
+    assert [key for key in shown(Axis()) if "p-" + key.rsplit(":", 1)[0] not in ids] == []
+
+
+def test_every_point_has_its_tag():
+    tags = {element.get("data-device") for element in xml.fromstring(PICTURE.svg()).iter()} - {None}
+    assert tags == set(Axis.wiring)
+
+
+def test_the_table_travels_and_the_coupling_turns_with_it():
+    state = shown(Axis(position=100.0), 250, 1)  # 2.5 mm further: a quarter of a turn of 10 mm
+    assert moved(state, "table") == (123.0, 0.0)  # 1.2 px a millimetre
+    assert state["coupling:transform"].startswith("rotate(90 ")
+    assert state["words:text"] == "102.5 mm, 25 mm/s"
+
+
+def test_movement_lamps_and_switches_are_lit():
+    assert lit(shown(Axis(position=100.0), 1000, 1, Y5=1)) == {"X0", "X6", "X6-switch", "X7", "X7-switch", "Y0", "motor", "go-forward",
+                                                              "Y4", "Y5", "Y5-lamp"}  # fmt: skip
+    state = lit(shown(Axis(position=12.0), 50))
+    assert {"go-back", "motor", "X3", "X3-switch"} <= state
+    assert state & {"go-forward", "Y4", "Y5", "amiss"} == set()
+    assert lit(shown(Axis(position=50.0), Y5=1, Y6=1)) & {"Y0", "motor", "go-back", "Y6", "Y6-lamp"} == {"Y6", "Y6-lamp"}
+
+
+def test_what_went_wrong_is_told():
+    state = shown(Axis(position=-29.5), 80)  # 0.8 mm, of which 0.5 are free
+    assert "amiss" in lit(state)
+    assert state["amiss-text:text"] == "30 pulses against the stop"
+
+
+def test_nothing_stands_outside_the_frame():
+    for element in xml.fromstring(PICTURE.svg()).iter():
+        for name, most in (("x", 720), ("cx", 720), ("y", 330), ("cy", 330)):
+            assert 0 <= float(element.get(name, 0)) <= most
+    for position in (-30, 410):  # the table, 72 px wide round 150 at 0 mm
+        assert 0 <= 150 + 1.2 * position - 36 <= 150 + 1.2 * position + 36 <= 720
