@@ -130,7 +130,7 @@ class Sensors:
             self._renew([fault.device])
 
     def mend(self, text: str = ALL) -> None:
-        """Switch out a fault of the machine's own, that of a sensor (by device or name), or all; raises EcsimError for what there is not."""
+        """Switch out a fault of the machine's own, that of a sensor (by device or name), or all. Raises EcsimError for what is none."""
         own = list(getattr(self.plant, "faults", ())) if text == ALL else [text] if text in self.own else []
         for fault in own:
             self.plant.fail(fault, on=False)

@@ -19,7 +19,7 @@ FLOORS = (
     ("assembler", "project", "protection", "system", "upload"),
     ("engines", "editing", "saved", "states"),
     ("plc", "programming", "formats", "monitor"),
-    ("views", "record", "conditions", "history", "network", "outside", "modbus", "verify", "scenario", "help"),
+    ("views", "record", "conditions", "history", "network", "outside", "modbus", "verify", "scenario", "help", "sensors"),
     ("breakpoints", "session"),
     ("grading",),
     ("cli", "terminal", "pytest_plugin", "__init__", "__main__"),
