@@ -1,18 +1,29 @@
-// The ladder with the power flow of the last scan. Python lays it out for the width that there is. An element that is chosen can be
-// written and forced, and tells where its device is used.
+// The ladder with the power flow of the last scan. Python lays it out for the width that there is and tells where every network
+// lies; the page tells which networks it looks at, about three screens of them, and gets their drawings and values. An element that
+// is chosen can be written and forced, can have a breakpoint, and tells where its device is used.
 
 panels.ladder = (place, layout, page, view) => {
   const { section, body, sub } = frame(place, {
     title: "Ladder",
     sub: layout.about,
     key: "ladder",
-    tools: `<button class="tool follow" aria-pressed="true" data-testid="follow" title="Keep the active step in view">${icon("follow")}Follow</button>`,
+    tools: `<span class="sub where" data-testid="where"></span>
+      <label class="ladder-find">${icon("find")}<span class="visually-hidden">Find</span><input type="search" size="9" placeholder="Find" spellcheck="false" autocomplete="off" data-testid="find" title="A device, a name, a program step, a comment (Ctrl F)"></label>
+      <button class="tool break" aria-pressed="false" data-testid="ladder-break" title="Stop the run when the chosen element closes or is reached (B)" disabled>${icon("brk")}Break</button>
+      <button class="tool follow" aria-pressed="true" data-testid="follow" title="Keep the active step in view">${icon("follow")}Follow</button>`,
   });
+  const contact = (state) =>
+    `<svg class="ec" width="34" height="20" viewBox="0 0 34 20" aria-hidden="true"><path class="wire${state === "flow" ? " on" : ""}" d="M0 10H10M24 10H34"/><g class="contact ${state}"><rect class="gap" x="10" y="1" width="14" height="18"/><path class="bars" d="M10 1v18M24 1v18"/></g></svg>`;
+  section.insertAdjacentHTML(
+    "beforeend",
+    `<footer class="panel-foot"><span class="key">${contact("open")}open</span><span class="key">${contact("closed")}closed, no power</span><span class="key">${contact("flow")}power flows</span><span class="key"><span class="badge-f">F</span>forced</span><span class="key"><b class="mono bit-on">1</b>bit of a set or reset coil</span><span class="gap"></span><span><kbd>↑</kbd> <kbd>↓</kbd> network <kbd>Enter</kbd> write or force <kbd>U</kbd> where used <kbd>B</kbd> break</span></footer>`,
+  );
   body.className = "panel-body scroll ladder-scroll";
   body.setAttribute("role", "group");
   body.setAttribute("aria-label", "Networks");
-  const follow = section.querySelector(".follow");
+  const [where, find, breaker, follow] = [".where", ".ladder-find input", ".break", ".follow"].map((part) => section.querySelector(part));
   const follows = () => follow.getAttribute("aria-pressed") === "true";
+  const stay = () => set(follow, "aria-pressed", "false");
   follow.hidden = !Object.keys(layout.steps ?? {}).length;
   follow.addEventListener("click", () => {
     set(follow, "aria-pressed", String(!follows()));
@@ -20,48 +31,141 @@ panels.ladder = (place, layout, page, view) => {
     track();
   });
   // Whoever scrolls by hand wants to stay where they are.
-  for (const hand of ["wheel", "touchmove"]) body.addEventListener(hand, () => set(follow, "aria-pressed", "false"), { passive: true });
+  for (const hand of ["wheel", "touchmove"]) body.addEventListener(hand, stay, { passive: true });
 
+  const id = Math.random().toString(36).slice(2, 10);
+  const nets = new Map(); // number from 0 -> { node, markup }, of those that are drawn
   let drawing;
+  let tops = [0]; // where each network begins, and where the last one ends
   let state = {};
+  let seen = null; // the networks that Python was told of
+  let goal = null; // { number, position } to go to as soon as it is drawn
   let watched;
-  function draw(svg) {
-    drawing = new Drawing(body, svg);
-    drawing.apply(state);
-    [...drawing.svg.querySelectorAll(".net")].forEach((net, row) =>
-      [...net.querySelectorAll("[data-position]")].forEach((node, col) => {
-        node.dataset.row = row;
-        node.dataset.col = col;
-        node.setAttribute("tabindex", "-1");
-      }),
-    );
-    const first = drawing.svg.querySelector("[data-position]");
-    if (first) first.tabIndex = 0;
+  let refused = ""; // why there is no breakpoint where one was asked for
+  let stoppedAt; // the element that was gone to when the run had stopped there
+
+  // -- what is drawn -------------------------------------------------------------------------------------------------
+
+  const count = () => tops.length - 1;
+  function numberAt(height) {
+    let [low, high] = [0, Math.max(0, count() - 1)];
+    while (low < high) {
+      const middle = (low + high + 1) >> 1;
+      if (tops[middle] <= height) low = middle;
+      else high = middle - 1;
+    }
+    return low;
+  }
+  function anchor() {
+    const number = numberAt(body.scrollTop);
+    return { number, offset: body.scrollTop - tops[number] };
+  }
+  function draw(sheet) {
+    const kept = drawing ? anchor() : view.ladderAt; // a program that was changed is shown where the old one was
+    const focused = body.contains(document.activeElement) ? document.activeElement.dataset.position : undefined;
+    drawing = new Drawing(body, sheet.svg);
+    set(drawing.svg, "role", "group");
+    nets.clear();
+    tops = sheet.tops;
     outline = null;
-    if (chosen !== null) choose(element(chosen));
+    for (const [entry, markup] of Object.entries(state)) if (markup && entry.startsWith("net.")) add(Number(entry.slice(4)), markup);
+    if (kept && kept.number < count()) body.scrollTop = tops[kept.number] + kept.offset;
+    if (focused !== undefined) element(focused)?.focus({ preventScroll: true });
+    seen = null;
     watched = undefined;
-    track();
+  }
+  function add(number, markup) {
+    if (nets.get(number)?.markup === markup) return;
+    remove(number);
+    const node = drawing.add(markup, [...nets].filter(([other]) => other > number).sort(([a], [b]) => a - b)[0]?.[1].node);
+    nets.set(number, { node, markup });
+    const title = node.querySelector(".net-title")?.textContent ?? "";
+    set(node, "role", "group");
+    set(node, "aria-label", `${node.dataset.unit}, network ${Number(node.dataset.network) + 1}${title ? `, ${title}` : ""}`);
+    node.dataset.number = number;
+    [...node.querySelectorAll("[data-position]")].forEach((each, column) => {
+      each.dataset.row = number;
+      each.dataset.col = column;
+      each.setAttribute("tabindex", "-1");
+    });
+    if (chosen !== null && node.querySelector(`[data-position="${chosen}"]`)) frameChosen();
+  }
+  function remove(number) {
+    const node = nets.get(number)?.node;
+    if (!node) return;
+    drawing.remove(node);
+    nets.delete(number);
+  }
+  // One stop of Tab: what is chosen, else the first element that can be seen.
+  function stop() {
+    if (body.querySelector('[data-position][tabindex="0"]')) return;
+    const first = element(chosen) ?? nets.get(numberAt(body.scrollTop))?.node.querySelector("[data-position]") ?? body.querySelector("[data-position]");
+    if (first) first.tabIndex = 0;
   }
   roving(body, () => [...body.querySelectorAll("[data-position]")]);
 
+  // Tells Python about three screens of networks, again as soon as less than half a screen is left above or below.
+  let due;
+  function look() {
+    due = undefined;
+    const [top, high] = [body.scrollTop, body.clientHeight];
+    if (!drawing || !high || !count()) return;
+    const first = numberAt(top);
+    const shown = [...nets.values()].find(({ node }) => Number(node.dataset.number) === first)?.node;
+    write(where, `Network ${number(first + 1)} of ${number(count())}`);
+    if (shown) where.title = shown.getAttribute("aria-label");
+    view.ladderAt = anchor();
+    if (page.dead || (seen && numberAt(top - high / 2) >= seen[0] && numberAt(top + 1.5 * high) <= seen[1])) return;
+    seen = [numberAt(top - high), numberAt(top + 2 * high)];
+    page.say("ladder", "see", { view: id, first: seen[0], last: seen[1] });
+  }
+  const soon = () => (due ??= requestAnimationFrame(look));
+  body.addEventListener("scroll", soon, { passive: true });
+  const room = new ResizeObserver(soon);
+  room.observe(body);
+
+  const scrollTo = (number) => (body.scrollTop = Math.max(0, tops[number] - 8));
   function track() {
     const step = (state.active ?? [])[0];
-    if (!drawing || !follows() || !step || step === watched) return;
+    if (!drawing || !follows() || !step || step === watched || !(step in layout.steps)) return;
     watched = step;
-    const [unit, network] = layout.steps[step] ?? [];
-    const strip = drawing.svg.querySelector(`.net[data-unit="${CSS.escape(unit)}"][data-network="${network}"]`);
-    if (strip) body.scrollTop = Math.max(0, strip.getBoundingClientRect().top - body.getBoundingClientRect().top + body.scrollTop - 8);
+    scrollTo(layout.steps[step]);
   }
 
   // Shows the network of a step; whoever asked for it wants to stay there.
   function reveal(step) {
-    set(follow, "aria-pressed", "false");
-    const [unit, network] = layout.steps[step] ?? [];
-    const strip = drawing?.svg.querySelector(`.net[data-unit="${CSS.escape(unit)}"][data-network="${network}"]`);
-    if (!strip) return;
-    body.scrollTop = Math.max(0, strip.getBoundingClientRect().top - body.getBoundingClientRect().top + body.scrollTop - 8);
+    const number = layout.steps[step];
+    if (number === undefined) return;
     body.scrollIntoView({ block: "nearest" });
-    strip.querySelector("[data-position]")?.focus({ preventScroll: true });
+    scrollTo(number);
+    go(number, null);
+  }
+
+  // Goes to an element, or to the first of a network; if it is not drawn yet, as soon as it is.
+  function go(number, position, byHand = true) {
+    leave();
+    if (byHand) stay();
+    goal = { number, position, byHand };
+    if (!nets.has(number)) body.scrollTop = (tops[number] + tops[number + 1] - body.clientHeight) / 2;
+    look();
+    arrive();
+  }
+  function arrive() {
+    const net = goal && nets.get(goal.number);
+    if (!net) return;
+    const { position, byHand } = goal;
+    goal = null;
+    const node = position === null ? net.node.querySelector("[data-position]") : element(position);
+    if (!node) return;
+    choose(node);
+    if (!byHand) return bring(node); // the focus stays where somebody works
+    if (position !== null) node.scrollIntoView({ block: "center", inline: "nearest" });
+    node.focus({ preventScroll: true });
+  }
+  // Scrolls the panel alone until a node can be seen.
+  function bring(node) {
+    const [own, outer] = [node.getBoundingClientRect(), body.getBoundingClientRect()];
+    if (own.top < outer.top || own.bottom > outer.bottom) body.scrollTop += own.top - outer.top - (outer.height - own.height) / 2;
   }
 
   // -- a chosen element ----------------------------------------------------------------------------------------------
@@ -70,20 +174,61 @@ panels.ladder = (place, layout, page, view) => {
   let chosen = null; // the position of its instruction
   let outline = null; // around it
   let list = null; // the places where its devices are used
-  const element = (position) => drawing?.svg.querySelector(`[data-position="${position}"]`);
-  function choose(node) {
+  const element = (position) => (position === null ? null : drawing?.find(`e${position}`));
+  const shape = (name, attributes) => {
+    const node = document.createElementNS("http://www.w3.org/2000/svg", name);
+    for (const [attribute, value] of Object.entries(attributes)) set(node, attribute, value);
+    return node;
+  };
+  function frameChosen() {
+    const node = element(chosen);
     if (!node) return;
-    chosen = node.dataset.position;
-    if (!outline) {
-      outline = document.createElementNS("http://www.w3.org/2000/svg", "rect");
-      set(outline, "class", "selected");
-      set(outline, "rx", 4);
-      set(outline, "pointer-events", "none");
-    }
+    outline ??= shape("rect", { class: "selected", rx: 4, "pointer-events": "none" });
     const box = node.getBBox();
     for (const [name, value] of Object.entries({ x: box.x - 5, y: box.y - 5, width: box.width + 10, height: box.height + 10 })) set(outline, name, value);
     node.parentNode.insertBefore(outline, node.parentNode.firstChild); // below the symbols
   }
+  function choose(node) {
+    if (!node) return;
+    chosen = node.dataset.position;
+    refused = "";
+    frameChosen();
+    tell();
+  }
+
+  // -- breakpoints: an octagon at the element, hollow when it is switched off, ringed where the run has stopped ----------
+
+  function mark() {
+    for (const node of body.querySelectorAll(".break-mark")) node.remove();
+    for (const [position, kind] of Object.entries(state.breaks ?? {})) {
+      const node = element(position);
+      const symbol = node?.querySelector(".bars, .frame, .box");
+      if (!symbol) continue;
+      const box = symbol.getBBox();
+      const octagon = shape("path", { class: `break-mark breakpoint ${kind}`, "pointer-events": "none", d: `M${box.x - 11} ${box.y - 7}h5.8l4.1 4.1v5.8l-4.1 4.1h-5.8l-4.1 -4.1v-5.8z` });
+      node.parentNode.append(octagon);
+    }
+    tell();
+  }
+  function tell() {
+    const stopped = Object.entries(state.breaks ?? {}).find(([, kind]) => kind === "hit")?.[0];
+    const active = state.active ?? [];
+    const words = refused || (stopped ? `stopped at ${element(stopped)?.dataset.device ?? "a breakpoint"}` : active.length ? `${layout.about} · ${active.join(", ")} active` : layout.about);
+    write(sub, words);
+    sub.title = words;
+    set(sub, "role", refused ? "alert" : null);
+    set(breaker, "aria-pressed", String(chosen in (state.breaks ?? {})));
+    breaker.disabled = page.dead || chosen === null;
+  }
+  const toggle = () =>
+    page.request("ladder", "break", { position: Number(chosen) }, (reason) => {
+      refused = reason ?? "";
+      tell();
+    });
+  breaker.addEventListener("click", toggle);
+
+  // -- its devices, and what is looked for -----------------------------------------------------------------------------
+
   // Boxes have several devices; what they write comes first.
   const asked = (node, heard) => page.request("ladder", "about", { position: Number(node.dataset.position) }, (devices) => devices?.length && heard(devices));
   const change = (node) =>
@@ -91,68 +236,88 @@ panels.ladder = (place, layout, page, view) => {
       const { label, name, what } = devices.find((each) => each.written) ?? devices[0];
       plate.open(node, { device: label, name, what });
     });
+  const rows = (places, here) =>
+    `<ul>${places.map(([number, position, unit, network, step, words]) => `<li><button data-number="${number}" data-go="${position}"${String(position) === here ? ' aria-current="true"' : ""}><span class="dim">${escaped(unit)}</span> network ${network} <span class="mono dim">step ${step}</span> ${escaped(words)}</button></li>`).join("")}</ul>`;
+  function show(anchor, label, markup, back) {
+    leave();
+    list = document.createElement("div");
+    list.className = "plate-pop uses scroll";
+    list.dataset.testid = "uses";
+    list.setAttribute("role", "dialog");
+    list.setAttribute("aria-label", label);
+    list.innerHTML = markup;
+    view.root.append(list);
+    const [spot, root] = [anchor.getBoundingClientRect(), view.root.getBoundingClientRect()];
+    const zoom = root.width / view.root.offsetWidth || 1;
+    list.style.left = `${Math.max(4, Math.min((spot.left - root.left) / zoom, view.root.offsetWidth - list.offsetWidth - 4))}px`;
+    list.style.top = `${Math.max(4, Math.min((spot.bottom - root.top) / zoom + 6, view.root.offsetHeight - list.offsetHeight - 4))}px`;
+    const buttons = [...list.querySelectorAll("button")];
+    buttons.forEach((button, at) => {
+      button.addEventListener("click", () => go(Number(button.dataset.number), button.dataset.go));
+      button.addEventListener("keydown", (event) => {
+        const next = { ArrowDown: buttons[at + 1], ArrowUp: buttons[at - 1] ?? (back === find ? find : undefined) }[event.key];
+        if (next) next.focus();
+        if (event.key === "ArrowDown" || event.key === "ArrowUp") event.preventDefault();
+      });
+    });
+    list.addEventListener("keydown", (event) => {
+      event.stopPropagation();
+      if (event.key !== "Escape") return;
+      leave();
+      (back === find ? find : element(chosen))?.focus({ preventScroll: true });
+    });
+    return buttons;
+  }
   const uses = (node) =>
     asked(node, (devices) => {
-      leave();
-      list = document.createElement("div");
-      list.className = "plate-pop uses scroll";
-      list.dataset.testid = "uses";
-      list.setAttribute("role", "dialog");
-      list.setAttribute("aria-label", "Used where");
-      list.innerHTML = devices
+      const here = node.dataset.position;
+      const markup = devices
         .map(({ label, name, what, places }) => `
-          <p><b class="mono">${escaped(label.split(":")[0])}</b> ${escaped(name)} <span class="dim">${escaped(what)} · used in ${places.length} ${places.length === 1 ? "place" : "places"}</span></p>
-          <ul>${places.map(([position, unit, network, step, words]) => `<li><button data-go="${position}"${String(position) === node.dataset.position ? ' aria-current="true"' : ""}><span class="dim">${escaped(unit)}</span> network ${network} <span class="mono dim">step ${step}</span> ${escaped(words)}</button></li>`).join("")}</ul>`)
+          <p><b class="mono">${escaped(label.split(":")[0])}</b> ${escaped(name)} <span class="dim">${escaped(what)} · used in ${places.length} ${places.length === 1 ? "place" : "places"}</span></p>${rows(places, here)}`)
         .join("");
-      view.root.append(list);
-      const [spot, root] = [node.getBoundingClientRect(), view.root.getBoundingClientRect()];
-      const zoom = root.width / view.root.offsetWidth || 1;
-      list.style.left = `${Math.max(4, Math.min((spot.left - root.left) / zoom, view.root.offsetWidth - list.offsetWidth - 4))}px`;
-      list.style.top = `${Math.max(4, Math.min((spot.bottom - root.top) / zoom + 6, view.root.offsetHeight - list.offsetHeight - 4))}px`;
-      const buttons = [...list.querySelectorAll("button")];
-      buttons.forEach((button, at) => {
-        button.addEventListener("click", () => go(button.dataset.go));
-        button.addEventListener("keydown", (event) => {
-          const next = { ArrowDown: buttons[at + 1], ArrowUp: buttons[at - 1] }[event.key];
-          if (next) next.focus();
-          if (event.key === "ArrowDown" || event.key === "ArrowUp") event.preventDefault();
-        });
-      });
-      list.addEventListener("keydown", (event) => {
-        event.stopPropagation();
-        if (event.key !== "Escape") return;
-        leave();
-        element(chosen)?.focus({ preventScroll: true });
-      });
-      (buttons.find((button) => button.dataset.go !== node.dataset.position) ?? buttons[0])?.focus({ preventScroll: true });
+      const buttons = show(node, "Used where", markup, node);
+      (buttons.find((button) => button.dataset.go !== here) ?? buttons[0])?.focus({ preventScroll: true });
     });
+  function search() {
+    const text = find.value;
+    if (!text.trim()) return leave();
+    page.request("ladder", "find", { text }, (places) => {
+      if (find.value !== text || document.activeElement !== find) return;
+      const found = places.length ? `${places.length} ${places.length === 1 ? "place" : "places"}` : "nothing in this program";
+      show(find, "Found", `<p><b>${escaped(text)}</b> <span class="dim" role="status">${found}</span></p>${rows(places)}`, find);
+    });
+  }
+  find.addEventListener("input", search);
+  find.addEventListener("keydown", (event) => {
+    event.stopPropagation();
+    const first = list?.querySelector("button");
+    if (event.key === "Escape") leave();
+    else if (event.key === "Enter" && first) first.click();
+    else if (event.key === "Enter") search();
+    else if (event.key === "ArrowDown" && first) first.focus();
+    else return;
+    event.preventDefault();
+  });
   function leave() {
     list?.remove();
     list = null;
   }
-  function go(position) {
-    leave();
-    set(follow, "aria-pressed", "false");
-    const node = element(position);
-    if (!node) return;
-    choose(node);
-    node.scrollIntoView({ block: "center", inline: "nearest" });
-    node.focus({ preventScroll: true });
-  }
+
   const at = (event) => event.target.closest?.("[data-position]");
   body.addEventListener("click", (event) => choose(at(event)));
   body.addEventListener("focusin", (event) => choose(at(event)));
   body.addEventListener("dblclick", (event) => at(event) && change(at(event)));
-  body.addEventListener("keydown", (event) => {
-    const node = at(event);
-    if (!node || event.ctrlKey || event.metaKey || event.altKey) return;
-    if (event.key === "Enter") change(node);
-    else if (event.key === "u" || event.key === "U") uses(node);
+  section.addEventListener("keydown", (event) => {
+    if ((event.ctrlKey || event.metaKey) && !event.altKey && event.key.toLowerCase() === "f") find.select();
+    else if (event.ctrlKey || event.metaKey || event.altKey || !at(event)) return;
+    else if (event.key === "Enter") change(at(event));
+    else if (event.key.toLowerCase() === "u") uses(at(event));
+    else if (event.key.toLowerCase() === "b") toggle();
     else return;
     event.preventDefault();
     event.stopPropagation();
   });
-  const outside = (event) => list && !list.contains(event.target) && leave();
+  const outside = (event) => list && !list.contains(event.target) && event.target !== find && leave();
   document.addEventListener("pointerdown", outside);
 
   const sizes = fitting("ladder", body, page);
@@ -161,21 +326,43 @@ panels.ladder = (place, layout, page, view) => {
     reveal,
     apply(changes, now) {
       state = now;
-      if (changes.svg) draw(changes.svg);
-      else drawing?.apply(changes);
+      if (changes.sheet) draw(changes.sheet);
+      else
+        for (const [entry, markup] of Object.entries(changes)) {
+          if (!entry.startsWith("net.")) continue;
+          const number = Number(entry.slice(4));
+          if (markup) add(number, markup);
+          else if (!nets.get(number)?.node.contains(document.activeElement)) remove(number); // what has the focus stays
+        }
+      drawing?.apply(changes.sheet ? now : changes);
+      if (changes.breaks || changes.active || changes.sheet) mark();
+      else if (Object.keys(state.breaks ?? {}).length && Object.keys(changes).some((entry) => entry.startsWith("net."))) mark();
       plate.show(now);
-      if (changes.active) {
-        write(sub, changes.active.length ? `${layout.about} · ${changes.active.join(", ")} active` : layout.about);
-        track();
-      }
+      if (changes.active) track();
+      if (changes.hit && String(changes.hit) !== stoppedAt) go(...changes.hit, false);
+      if ("hit" in changes) stoppedAt = String(changes.hit);
+      stop();
+      arrive();
+      if (changes.sheet) look();
     },
     rest(dead) {
       sizes.rest(dead);
-      if (dead) plate.close();
-      if (dead) leave();
+      find.disabled = dead;
+      tell();
+      if (!dead) return soon();
+      plate.close();
+      leave();
+      seen = null;
+      // Only the networks that were looked at last are there.
+      const drawn = [...nets.keys()].sort((a, b) => a - b);
+      const [first, last] = [numberAt(body.scrollTop), numberAt(body.scrollTop + body.clientHeight)];
+      if (drawn.length && !drawn.some((number) => number >= first && number <= last)) body.scrollTop = tops[drawn[drawn.length >> 1]] - body.clientHeight / 2;
     },
     close() {
+      page.say("ladder", "unsee", { view: id });
+      cancelAnimationFrame(due);
       sizes.close();
+      room.disconnect();
       plate.end();
       leave();
       document.removeEventListener("pointerdown", outside);

@@ -1,81 +1,205 @@
-"""The ladder with the power flow of the last scan, laid out for the width that the page has."""
+"""The ladder with the power flow of the last scan, laid out for the width that the page has.
+
+Of a large program the page gets the height of every network, and the drawings and values of those that it looks at.
+"""
 
 from __future__ import annotations
 
-import re
+from bisect import bisect_right
+from collections.abc import Iterator
 
 from ecsim.assembler.program import Instruction
 from ecsim.devices import Bits, Device
+from ecsim.errors import EcsimError
 from ecsim.instructions.signature import OperandSpec
 from ecsim.values import BOOL
-from ecsim.views.ladder import Ladder as Drawing
+from ecsim.views.asked import asked
 from ecsim.views.ladder import ladder
 
 from .plate import Plated
 from .rig import PREFIX, Rig
 
 NARROWEST, WIDEST = 340, 1400
-
-
+FIRST = 12  # networks that are there before a page has said what it looks at
+MOST_LOOKS, MOST_NETWORKS = 4, 300  # views at a time, and what one of them may look at
 MOST_PLACES = 200  # of a device, told at once
 
 
 class Ladder(Plated):
-    """The whole program as a ladder. The drawing is an entry of the frame, since the page may ask for another width."""
+    """The whole program as a ladder. A frame has an entry "net.<n>" for the drawing of each network that some view looks at."""
 
     key = "ladder"
 
     def __init__(self, rig: Rig):
         super().__init__(rig)
-        self._drawn = self._draw(NARROWEST)
-        self.least = int(re.search(r' width="(\d+)', self._drawn[2])[1])  # the program may need more than was asked for
+        self.drawing = ladder(rig.program)
+        self._looks: dict[str, range] = {"": range(min(FIRST, len(self.drawing)))}
+        self._lay_out(NARROWEST)
+        self.least = int(self.sheet.width)  # the program may need more than was asked for
+        self.first = [entry.words[0].position for entry in self.drawing.entries]
+        self._asked: dict[int, dict[int, str]] = {}
+        self._set_at: dict[str, int] = {}  # what was asked by a breakpoint set here -> the position of its element
 
-    def _draw(self, width: int) -> tuple[int, Drawing, str]:
-        drawing = ladder(self.rig.program)
-        return width, drawing, drawing.svg(PREFIX, width)
+    def _lay_out(self, width: int) -> None:
+        self.width, self.sheet = width, self.drawing.sheet(width)
+        self._networks: dict[int, str] = {}
+        strips = self.sheet.strips
+        self._places = {
+            "svg": self.sheet.shell(PREFIX),
+            "tops": [*(round(strip.above) for strip in strips), round(strips[-1].bottom)] if strips else [0],
+        }
 
     def layout(self):
-        steps = {}
-        for unit in self.rig.program.units:
-            for network in unit.networks:
-                for instruction in unit.instructions[network.start : network.end]:
-                    if instruction.mnemonic == "STL":
-                        steps.setdefault(str(instruction.operands[0]), [unit.name, network.number])
-        return {"about": f"{self.rig.program.steps} steps", "steps": steps, "least": self.least}
+        return {"about": f"{self.rig.program.steps:,} steps", "steps": self._steps(), "least": self.least}
+
+    def _steps(self) -> dict[str, int]:
+        """The network where each step begins."""
+        steps: dict[str, int] = {}
+        for number, entry in enumerate(self.drawing.entries):
+            for word in entry.words:
+                if word.mnemonic == "STL":
+                    steps.setdefault(str(word.operands[0]), number)
+        return steps
 
     def frame(self):
-        _, drawing, svg = self._drawn
-        return {"svg": svg, "active": self.rig.active(), **self.plates(), **drawing.state(self.rig.plc)}
+        plc, hit = self.rig.plc, self._hit
+        shown = sorted(set().union(*self._looks.values()))
+        entries = {"sheet": self._places, "active": self.rig.active(), **self.plates()}
+        for number in shown:
+            if number not in self._networks:
+                self._networks[number] = self.sheet.network(number, PREFIX)
+            entries[f"net.{number}"] = self._networks[number]
+        entries |= self.sheet.state(plc, shown)
+        entries["breaks"] = self._marks(shown, entries)
+        entries["hit"] = self._where(self._set_at[hit]) if hit in self._set_at else None
+        return entries
+
+    # -- what the page looks at ---------------------------------------------------------------------------------
 
     def on_fit(self, width):
         """Lay the ladder out anew for a width in px."""
         width = min(max(int(width), NARROWEST), WIDEST)
-        if width != self._drawn[0]:
-            self._drawn = self._draw(width)
+        if width != self.width:
+            self._lay_out(width)
+
+    def on_see(self, view, first, last):
+        """A view looks at the networks from `first` to `last`, counted from 0."""
+        first = min(max(int(first), 0), len(self.drawing))
+        looks = {name: numbers for name, numbers in self._looks.items() if name not in ("", view)}
+        while len(looks) >= MOST_LOOKS:  # a page that went away leaves its own behind
+            del looks[next(iter(looks))]
+        self._looks = looks | {view: range(first, min(int(last) + 1, len(self.drawing), first + MOST_NETWORKS))}
+
+    def on_unsee(self, view):
+        """A view is no more."""
+        self._looks = {name: numbers for name, numbers in self._looks.items() if name != view}
+
+    def _where(self, position: int) -> list[int]:
+        """An element's network and position."""
+        return [bisect_right(self.first, position) - 1, position]
+
+    # -- breakpoints --------------------------------------------------------------------------------------------
+
+    @property
+    def _hit(self) -> str:
+        """The condition that has stopped the run, while it stands still."""
+        session = self.rig.session
+        return session.hit.text if session.hit and session.state != "running" else ""
+
+    def _questions(self, number: int) -> dict[int, str]:
+        """What a breakpoint at each element of a network would ask."""
+        if number not in self._asked:
+            self._asked[number] = asked(self.drawing.entries[number].rung, self.rig.plc.model)
+        return self._asked[number]
+
+    def _marks(self, shown: list[int], entries: dict) -> dict[str, str]:
+        """The elements that have a breakpoint: position -> "on", "off" or "hit"."""
+        points = {point.text: "on" if point.enabled else "off" for point in self.rig.session.breakpoints}
+        if points.get(self._hit) == "on":
+            points[self._hit] = "hit"
+        if not points:
+            return {}
+        marks = {}
+        for number in shown:
+            for position, text in self._questions(number).items():
+                if text in points:
+                    marks[str(position)] = points[text]
+                    words = {"on": "breakpoint", "off": "breakpoint, switched off", "hit": "the run stopped here"}[points[text]]
+                    label = f"e{position}:aria-label"
+                    entries[label] = f"{entries.get(label, '')}, {words}"
+        return marks
+
+    def on_break(self, position):
+        """Set a breakpoint at an element, or take it away; gives the reason in words where nothing can be asked there, else ""."""
+        number, position = self._where(int(position))
+        text = self._questions(number).get(position)
+        if text is None:
+            return f"{self.rig.instructions[position]} has no breakpoint: between two scans nothing can be asked of it"
+        points = self.rig.session.breakpoints
+        if text in points:
+            points.remove(text)
+            self._set_at.pop(text, None)
+        else:
+            self._set_at[points.add(text).text] = position
+        return ""
+
+    # -- used where, and found ----------------------------------------------------------------------------------
 
     def on_about(self, position):
         """What an element speaks of: each of its devices, as a plate takes it, and every place where it is used.
 
-        Gives a dict for each device with label, name, what, `written` here or only read, and `places`: [position, unit, network, step, words].
+        Gives a dict for each device with label, name, what, `written` here or only read, and `places`:
+        [network from 0, position, unit, network as it is numbered, step, words].
         """
         instruction = self.rig.instructions[int(position)]
         return [
-            {"label": _label(operand, spec, instruction), "written": spec.written, "places": self._places(operand)}
+            {"label": _label(operand, spec, instruction), "written": spec.written, "places": self._places_of(operand)}
             | dict(zip(("name", "what"), self.rig.point(str(operand)), strict=True))
             for operand, spec in _devices(instruction)
         ]
 
-    def _places(self, wanted: Device | Bits) -> list[list]:
+    def _places_of(self, wanted: Device | Bits) -> list[list]:
         """Where a device is used, alone, in a Kn string or among the registers of a longer value, in the program's order."""
         found = []
-        for unit in self.rig.program.units:
-            for network in unit.networks:
-                for instruction in unit.instructions[network.start : network.end]:
-                    uses = {spec.written for operand, spec in _devices(instruction) if _meet(operand, spec, wanted)}
-                    if uses:
-                        words = f"{instruction.mnemonic} {'writes' if True in uses else 'reads'}"
-                        found.append([instruction.position, unit.name, network.number + 1, instruction.step, words])
-        return found[:MOST_PLACES]
+        for instruction in self.rig.instructions:
+            uses = {spec.written for operand, spec in _devices(instruction) if _meet(operand, spec, wanted)}
+            if uses:
+                found.append(self._place(instruction.position, f"{instruction.mnemonic} {'writes' if True in uses else 'reads'}"))
+        return [place for place in found if place][:MOST_PLACES]
+
+    def _place(self, position: int, words: str) -> list | None:
+        """A place as a list has it; None in a unit that a password closes."""
+        number = self._where(position)[0]
+        entry = self.drawing.entries[number] if number >= 0 else None
+        if entry is None or position > entry.words[-1].position:
+            return None
+        return [number, position, entry.unit.name, entry.rung.number + 1, self.rig.instructions[position].step, words]
+
+    def on_find(self, text):
+        """The places that a few letters lead to: a device (each of its uses), a program step, else what stands in the program."""
+        text = " ".join(str(text).split())
+        if not text:
+            return []
+        try:
+            device = self.rig.plc.memory.parse(text, self.rig.plc._names)[0]
+        except EcsimError:
+            pass
+        else:
+            return self._places_of(device)
+        return [place for place in self._found(text.lower()) if place][:MOST_PLACES]
+
+    def _found(self, text: str) -> Iterator[list | None]:
+        """Networks and program steps of that number; titles, comments, names and instructions that have the letters in them."""
+        for entry in self.drawing.entries:
+            head = entry.words[0]
+            if text == str(entry.rung.number + 1):
+                yield self._place(head.position, head.title or "network")
+            elif text in head.title.lower():
+                yield self._place(head.position, head.title)
+            for word in entry.words:
+                names = (entry.labels.of(word, place).name for place in range(len(word.operands)))
+                if text == str(word.step) or text in f"{word} {' '.join(names)} {word.comment}".lower():
+                    yield self._place(word.position, f"{word}{f' // {word.comment}' if word.comment else ''}")
 
 
 def _devices(instruction: Instruction) -> list[tuple[Device | Bits, OperandSpec]]:

@@ -30,6 +30,7 @@ const ICONS = {
   cross: '<path d="M4 4l8 8M12 4l-8 8"/>',
   unplugged: '<path d="M9.5 3.5l3 3-2 2-3-3zM3.5 9.5l3 3 2-2-3-3zM12 4l2-2M2 14l2-2M7 8l-1 1M8 9l-1 1"/>',
   reset: '<path d="M3.2 8a4.9 4.9 0 1 0 1.6-3.6"/><path d="M3.2 2.2v3.4h3.4"/>',
+  find: '<circle cx="7" cy="7" r="4.25"/><path d="M10.25 10.25L14 14"/>',
   follow: '<circle cx="8" cy="8" r="4.25"/><path d="M8 1.5v3M8 11.5v3M1.5 8h3M11.5 8h3"/>',
 };
 const icon = (name, size = 16) =>
@@ -79,6 +80,18 @@ class Drawing {
   still() {
     for (const node of this.svg.querySelectorAll("[role=button]")) set(node, "role", "img");
     return this;
+  }
+  // One more piece of the drawing, before another one or at the end; `remove` takes it out again.
+  add(markup, before = null) {
+    const holder = document.createElement("template");
+    holder.innerHTML = `<svg>${markup.replaceAll(KEY, this.prefix)}</svg>`;
+    const node = this.svg.insertBefore(holder.content.firstChild.firstChild, before);
+    for (const each of node.querySelectorAll("[id]")) this.known.set(each.id.slice(this.prefix.length), each);
+    return node;
+  }
+  remove(node) {
+    for (const each of node.querySelectorAll("[id]")) this.known.delete(each.id.slice(this.prefix.length));
+    node.remove();
   }
   apply(changes) {
     for (const [entry, value] of Object.entries(changes)) {
@@ -220,7 +233,8 @@ class Page {
   merge(state) {
     this.waiting ??= {};
     for (const [part, entries] of Object.entries(state)) {
-      Object.assign((this.state[part] ??= {}), entries);
+      const known = (this.state[part] ??= {});
+      for (const [key, value] of Object.entries(entries)) value === null ? delete known[key] : (known[key] = value);
       Object.assign((this.waiting[part] ??= {}), entries);
     }
   }

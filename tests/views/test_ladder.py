@@ -8,7 +8,9 @@ from hypothesis import HealthCheck, given, settings
 
 from ecsim import Plc
 from ecsim.assembler import assemble
+from ecsim.conditions import condition
 from ecsim.views import svg
+from ecsim.views.asked import asked
 from ecsim.views.ladder import ladder
 from ecsim.views.listing import listing
 from ecsim.views.rungs import Block, Contact, Gate, Output, Parallel, Series, rungs
@@ -468,3 +470,37 @@ def test_a_subroutine_that_was_not_called_has_no_values_and_its_tip_says_why(plc
     assert picture.state(plc)[f"v{position}.0:text"] == "–"
     assert picture.state(plc)[f"e{position + 1}:class"] == "coil open"
     assert "a value of ONE's own is there only after a call in the scan that is shown" in picture.svg()
+
+
+# -- what a breakpoint at an element asks ------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("text", "questions"),
+    [
+        ("LD X0\nANI X1\nOUT Y0\nRST M1", {0: "X0", 1: "not X1", 2: "Y0", 3: "not M1"}),
+        ("LD X0\nOR X1\nAND X2\nINC D0", {0: "X0", 1: "X1", 2: "X2", 3: "(X0 or X1) and X2"}),
+        ("LD X0\nLDI X1\nOR X2\nANB\nINC D0", {0: "X0", 1: "not X1", 2: "X2", 4: "X0 and (not X1 or X2)"}),
+        ("LDD> D0 -5\nINC D9", {0: "D0:DINT > -5", 1: "D0:DINT > -5"}),
+        ("LDR<= D0 2.5\nCTU C0 3", {0: "D0:REAL <= 2.500000", 1: "C0"}),
+        ("LD X0\nAND X1\nINV\nINC D0", {0: "X0", 1: "X1", 3: "not (X0 and X1)"}),
+        ("LD X0\nEU\nINC D0\nLD X1\nMOV 1 D0", {0: "X0", 3: "X1", 4: "X1"}),
+        ("LD X0\nMPS\nAND X1\nINC D0\nMPP\nINC D1", {0: "X0", 2: "X1", 3: "X0 and X1", 5: "X0"}),
+    ],
+)
+def test_what_a_breakpoint_at_an_element_asks(plc, text, questions):
+    plc.load(text)
+    found = {}
+    for tree in rungs(plc.program.main):
+        found |= asked(tree, plc.model)
+    assert found == questions
+    for question in found.values():
+        condition(plc, question)  # it can be read
+
+
+def test_what_is_there_only_within_a_scan_cannot_be_asked(plc):
+    plc.load(CALLED + "SUBROUTINE TWO\nLD> D0Z1 3\nINC D1\nEND_SUBROUTINE")
+    for name in ("ONE", "TWO"):
+        for tree in rungs(plc.program.unit(name)):
+            questions = asked(tree, plc.model)
+            assert set(questions.values()) <= {"SM0", "M0"}

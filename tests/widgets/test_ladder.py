@@ -1,5 +1,7 @@
 """The ladder's Python side: what an element speaks of, where that is used, and its plate."""
 
+from itertools import pairwise
+
 import pytest
 from ecsim_widgets.ladder import Ladder
 
@@ -35,7 +37,7 @@ def position(ladder, text):
 
 
 def used(ladder, text, place=0):
-    return [f"{unit} {network} {words}" for _, unit, network, _, words in ladder.on_about(position(ladder, text))[place]["places"]]
+    return [f"{unit} {network} {words}" for _, _, unit, network, _, words in ladder.on_about(position(ladder, text))[place]["places"]]
 
 
 def test_an_element_tells_its_device_with_name_and_comment(ladder):
@@ -68,3 +70,129 @@ def test_a_plate_of_the_ladder_forces(ladder):
     ladder.receive("force", {"plate": "p", "n": 1, "text": "1"})
     ladder.rig.session.scan()
     assert ladder.rig.plc.forced == {"M3": 1}
+
+
+# -- of a large program only what somebody looks at ----------------------------------------------------------------
+
+RUNGS = "\n".join(f"LD X{n % 8}\nANI X7\nOUT M{n}" for n in range(400))
+
+
+@pytest.fixture
+def large(make_rig):
+    return Ladder(make_rig(program=RUNGS))
+
+
+def drawn(frame):
+    return sorted(int(key[4:]) for key in frame if key.startswith("net."))
+
+
+def test_a_frame_has_the_networks_that_are_looked_at_and_no_others(large):
+    large.receive("see", {"view": "a", "first": 100, "last": 120})
+    frame = large.frame()
+    assert drawn(frame) == list(range(100, 121))
+    assert {key for key in frame if key.startswith("e")} == {f"e{p}:{what}" for p in range(300, 363) for what in ("class", "aria-label")}
+    large.rig.put("X4", 1)  # M100 = X4 and not X7
+    large.rig.session.scan(2)
+    assert large.frame()["e302:class"] == "coil flow"
+
+
+def test_two_views_get_what_both_look_at_until_one_goes(large):
+    large.receive("see", {"view": "a", "first": 0, "last": 1})
+    large.receive("see", {"view": "b", "first": 398, "last": 500})
+    assert drawn(large.frame()) == [0, 1, 398, 399]
+    large.receive("unsee", {"view": "a"})
+    assert drawn(large.frame()) == [398, 399]
+
+
+def test_views_that_went_away_unseen_are_forgotten(large):
+    for number in range(9):
+        large.receive("see", {"view": f"v{number}", "first": number, "last": number})
+    assert drawn(large.frame()) == [5, 6, 7, 8]
+
+
+def test_a_view_cannot_ask_for_all_of_a_large_program(large):
+    large.receive("see", {"view": "a", "first": -5, "last": 10**6})
+    assert len(drawn(large.frame())) == 300
+
+
+def test_the_height_of_every_network_is_told_at_once(large):
+    tops = large.frame()["sheet"]["tops"]
+    assert len(tops) == 401
+    assert {later - earlier for earlier, later in pairwise(tops)} == {84}  # 56 to the wire, 28 below it
+
+
+def test_places_of_use_name_the_network_that_is_to_be_gone_to(large):
+    (about,) = large.on_about(position(large, "OUT M399"))
+    assert about["places"] == [[399, 1199, "MAIN", 400, 399 * 3 + 2, "OUT writes"]]
+
+
+@pytest.mark.parametrize(
+    ("text", "places"),
+    [
+        ("m399", [[399, 1199]]),  # a device
+        ("400", [[133, 400], [399, 1197]]),  # a program step, and a network
+        ("out m398", [[398, 1196]]),  # an instruction
+        ("nowhere", []),
+        ("  ", []),
+    ],
+)
+def test_what_is_looked_for_is_found_in_networks_that_are_not_drawn(large, text, places):
+    assert [place[:2] for place in large.on_find(text)] == places
+
+
+def test_names_titles_and_comments_are_found(make_rig):
+    found = Ladder(make_rig()).on_find
+    assert [place[5] for place in found("follows the")] == ["the lamp follows the button"]
+    assert [place[5] for place in found("lamp")][-1] == "OUT writes"
+    assert [place[5] for place in found("Start")] == ["LD reads", "LD reads"]
+
+
+def test_what_a_password_closes_is_not_found(make_rig):
+    rig = make_rig(program="LD M3\nCALL SUB\nEND_PROGRAM\nSUBROUTINE SUB\nLD M3\nOUT Y0\nEND_SUBROUTINE".join(("PROGRAM MAIN\n", "")))
+    rig.program.unit("SUB").password = "secret"
+    ladder = Ladder(rig)
+    assert [place[1] for place in ladder.on_find("M3")] == [0]
+
+
+# -- breakpoints ---------------------------------------------------------------------------------------------------
+
+
+def test_a_breakpoint_is_set_at_a_contact_and_the_stop_shows_there(ladder):
+    contact = position(ladder, "LD M3")
+    ladder.receive("break", {"position": contact})
+    assert [point.text for point in ladder.rig.session.breakpoints] == ["M3"]
+    coil = position(ladder, "OUT M3")  # what the coil does is the same question
+    frame = ladder.frame()
+    assert frame["breaks"][str(contact)] == frame["breaks"][str(coil)] == "on"
+    assert frame[f"e{contact}:aria-label"].endswith("open, breakpoint")
+    ladder.rig.put("X5", 1)
+    ladder.rig.session.scan(3)
+    frame = ladder.frame()
+    assert (frame["breaks"][str(contact)], frame["hit"]) == ("hit", [2, contact])
+    assert frame[f"e{contact}:aria-label"].endswith("power flows, the run stopped here")
+    ladder.rig.session.breakpoints.enable("M3", False)
+    assert ladder.frame()["breaks"][str(contact)] == "off"
+    ladder.receive("break", {"position": contact})
+    assert (len(ladder.rig.session.breakpoints), ladder.frame()["breaks"]) == (0, {})
+
+
+@pytest.mark.parametrize(
+    ("text", "asked"),
+    [
+        ("LD Start", "X5"),
+        ("LD T0", "T0"),
+        ("DMOV D0 D10", "M3"),  # that power comes to the box
+        ("TON T0 50", "T0"),
+        ("OUT Y0", "Y0"),
+    ],
+)
+def test_what_a_breakpoint_at_an_element_asks(ladder, text, asked):
+    assert ladder.on_break(position(ladder, text)) == ""
+    assert [point.text for point in ladder.rig.session.breakpoints] == [asked]
+
+
+def test_where_nothing_can_be_asked_it_says_so_and_sets_none(make_rig):
+    ladder = Ladder(make_rig(program="LD X0\nEU\nINC D0"))
+    assert ladder.on_break(1) == "EU has no breakpoint: between two scans nothing can be asked of it"
+    assert ladder.on_break(2).startswith("INC D0 has no breakpoint")
+    assert len(ladder.rig.session.breakpoints) == 0

@@ -102,3 +102,163 @@ def test_the_chosen_element_stays_chosen_when_the_width_changes(ladder):
     ladder.frame()
     ladder.settle()
     expect(ladder["ladder"].locator("rect.selected")).to_have_count(1)
+
+
+# -- a large program: only what is looked at is drawn --------------------------------------------------------------
+
+RUNGS = 2000
+LARGE = "\n".join(f"LD X{n % 8}\nANI X7\nOUT M{n % 1990}" for n in range(RUNGS))
+
+
+@pytest.fixture
+def large(bench, make_lab):
+    bench.lab = make_lab(LARGE)
+    bench.connect(bench.lab.panel("ladder"))
+    return bench
+
+
+def drawn(ladder):
+    return ladder.js("() => [...document.querySelectorAll('.net')].map((net) => Number(net.dataset.network))")
+
+
+def visible(ladder):
+    return ladder.js("""() => {
+      const outer = document.querySelector('.ladder-scroll').getBoundingClientRect();
+      return [...document.querySelectorAll('.net')].filter((net) => {
+        const box = net.getBoundingClientRect();
+        return box.bottom > outer.top + 1 && box.top < outer.bottom - 1;
+      }).map((net) => Number(net.dataset.network));
+    }""")
+
+
+def scroll(ladder, height):
+    ladder.js("(height) => { document.querySelector('.ladder-scroll').scrollTop = height; }", height)
+    ladder.frame()
+    ladder.settle()
+
+
+def test_about_three_screens_are_drawn_and_all_can_be_scrolled_to(large):
+    body = large["ladder"].locator(".ladder-scroll")
+    assert body.evaluate("(body) => body.scrollHeight") > 150_000
+    assert 10 < len(drawn(large)) < 40
+    scroll(large, 10**6)
+    assert visible(large)[-1] == RUNGS - 1
+    assert len(drawn(large)) < 40
+    assert large["where"].inner_text() == f"Network {visible(large)[0] + 1:,} of 2,000"
+    scroll(large, 80_000)
+    numbers = drawn(large)
+    assert numbers == sorted(numbers)
+    assert visible(large)[0] == int((80_000 - 8) / 84)  # each network is 84 px high
+
+
+def test_what_is_scrolled_to_is_alive(large):
+    scroll(large, 100_000)
+    number = visible(large)[1]
+    large.lab.plc[f"X{number % 8}"] = 1
+    large.lab.session.scan(2)
+    large.settle()
+    expect(element(large, 3 * number + 2)).to_have_class("coil flow" if number % 8 != 7 else "coil open")
+
+
+def test_a_place_that_is_not_drawn_yet_is_gone_to(large):
+    large["find"].fill("m1500")
+    large.settle()
+    large.page.keyboard.press("Enter")
+    large.settle()
+    assert focused(large) == str(3 * 1500 + 2)
+    assert 1500 in visible(large)
+    expect(large["ladder"].locator("rect.selected")).to_have_count(1)
+    large.page.keyboard.press("u")
+    large.settle()
+    expect(large["uses"]).to_contain_text("network 1501")
+
+
+def test_what_is_not_there_is_said_and_the_field_keeps_it(large):
+    large["find"].fill("M9999x")
+    large.settle()
+    expect(large["uses"]).to_contain_text("nothing in this program")
+    large.page.keyboard.press("Escape")
+    expect(large["uses"]).to_have_count(0)
+    expect(large["find"]).to_have_value("M9999x")
+
+
+def test_the_arrows_go_on_into_networks_that_come_while_they_go(large):
+    element(large, 0).focus()
+    for number in range(1, 60):
+        large.page.keyboard.press("ArrowDown")
+        large.settle()
+        assert focused(large) == str(3 * number)
+
+
+def test_there_is_one_stop_of_tab_wherever_one_looks(large):
+    stops = "() => document.querySelectorAll('.ladder-scroll [tabindex=\"0\"]').length"
+    assert large.js(stops) == 1
+    scroll(large, 90_000)
+    assert large.js(stops) == 1
+
+
+def test_what_has_the_focus_stays_though_it_is_scrolled_away(large):
+    element(large, 3).focus()
+    scroll(large, 90_000)
+    assert focused(large) == "3"
+    scroll(large, 0)
+    assert focused(large) == "3"
+    assert drawn(large)[:3] == [0, 1, 2]
+
+
+def test_a_laid_out_anew_ladder_stands_where_it_was(large):
+    scroll(large, 70_000)
+    before = visible(large)[0]
+    large.page.set_viewport_size({"width": 800, "height": 900})
+    large.frame()
+    large.settle()
+    assert visible(large)[0] == before
+
+
+def test_opened_again_without_a_kernel_the_networks_seen_last_are_shown(large):
+    scroll(large, 70_000)
+    before = visible(large)
+    saved = large.js("() => ({ face: model.values.face, last: structuredClone(model.values.last) })")
+    large.js("(values) => { show(values); model.gone = true; model.handlers['comm_live_update'](); }", saved)
+    large.frame()
+    assert set(visible(large)) & set(before)
+    expect(large["ladder"].locator(".stamp")).to_contain_text("last state")
+
+
+def test_a_view_that_goes_says_so(large):
+    large.js("() => ends[0]()")
+    assert [verb for verb, _ in large.asked("ladder")][-1] == "unsee"
+
+
+# -- breakpoints ---------------------------------------------------------------------------------------------------
+
+
+def test_b_sets_a_breakpoint_and_the_stop_is_shown_there(large):
+    element(large, 3).focus()
+    large.page.keyboard.press("b")
+    large.settle()
+    assert [point.text for point in large.lab.session.breakpoints] == ["X1"]
+    marks = large["ladder"].locator(".break-mark.on")
+    assert marks.count() == len([n for n in drawn(large) if n % 8 == 1])  # wherever the same is asked
+    expect(large["ladder-break"]).to_have_attribute("aria-pressed", "true")
+    scroll(large, 90_000)
+    large.lab.plc["X1"] = 1
+    large.lab.session.scan()
+    large.settle()
+    large.settle()
+    assert 1 in visible(large)  # it has gone there by itself
+    expect(large["ladder"].locator(".panel-head .sub").first).to_have_text("stopped at X1")
+    expect(element(large, 3)).to_have_attribute("aria-label", "X1, normally open, power flows, the run stopped here")
+    large["ladder-break"].click()
+    large.settle()
+    assert len(large.lab.session.breakpoints) == 0
+    expect(large["ladder"].locator(".break-mark")).to_have_count(0)
+
+
+def test_where_none_can_be_set_it_is_said(bench, make_lab):
+    lab = make_lab("LD X0\nEU\nINC D0")
+    bench.connect(lab.panel("ladder"))
+    element(bench, 1).focus()
+    bench.page.keyboard.press("b")
+    bench.settle()
+    expect(bench["ladder"].locator(".panel-head [role=alert]")).to_contain_text("nothing can be asked of it")
