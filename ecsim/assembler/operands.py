@@ -154,7 +154,7 @@ class Resolver:
         elif room.kind == "word":
             length *= spec.type.words
         narrow = operand.area == "C" and spec.type.words == 1  # the counters behind the last one have 32 bits
-        last = (self.model.wide_counters if narrow else room.count) - 1
+        last = (self.model.wide_counters if narrow else room.end(operand.number)) - 1
         if operand.number + length - 1 > last:
             name = f"{operand.area}{number_text(operand.area, last)}"
             raise Refused(f"{shown(text)} reaches beyond {name}", f"it is the first of {length} {operand.area} devices", "3.2")

@@ -530,10 +530,10 @@ class Writer:
             return [("try:", *indented(lines), "except Fault:", f"{INDENT}pass") if self._may_fault(instruction) else (*lines,)]
         if definition.claims:
             return [(f"if E[{instruction.slot}]:", *indented(self._release(instruction))), *self._unit_erasures(instruction)]
-        devices = [operand for spec, operand in zip(definition.operands, instruction.operands, strict=True) if spec.written]
+        written = [(spec, operand) for spec, operand in zip(definition.operands, instruction.operands, strict=True) if spec.written]
         if definition.form == "always":
-            return [(*self.access.reset(device),) for device in devices]
-        return [(*self.access.store(BOOL, device, "False"),) for device in devices]
+            return [(*self.access.reset(device),) for spec, device in written if not spec.unit]  # an annunciator stays
+        return [(*self.access.store(BOOL, device, "False"),) for _, device in written]
 
     def _unit_erasures(self, instruction: Instruction) -> Iterator[tuple[str, ...]]:
         """The statements that clear the destinations of a command: a counter with its contact, bits, registers."""

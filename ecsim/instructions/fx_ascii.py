@@ -25,8 +25,8 @@ def _places(group) -> list[int]:
     return [group.number + place // 8 * 10 + place % 8 for place in range(4 * group.digits)]
 
 
-@command("FX:PRUN", "S:WORD[KnX] >D:PLACE[KnM]", steps=5, section="FNC 81", models=FX, check=_round_numbers)
-@command("FX:DPRUN", "S:DWORD[KnX] >D:DPLACE[KnM]", steps=9, section="FNC 81", models=FX, check=_round_numbers)
+@command("FX:PRUN", "S:WORD[KnX] >D:PLACE[KnM]~", steps=5, section="FNC 81", models=FX, check=_round_numbers)
+@command("FX:DPRUN", "S:DWORD[KnX] >D:DPLACE[KnM]~", steps=9, section="FNC 81", models=FX, check=_round_numbers)
 def prun(machine, s, group):
     """The relays M from D on take the inputs from S on, by number: X0 to X7 go to M0 to M7, X10 to X17 to M10 to M17."""
     relays = machine.memory.lists[group.area]
@@ -34,8 +34,8 @@ def prun(machine, s, group):
         relays[number] = s >> place & 1 == 1
 
 
-@command("FX:PRUN M", "S:PLACE[KnM] >D:WORD[KnY]", steps=5, section="FNC 81", models=FX, check=_round_numbers)
-@command("FX:DPRUN M", "S:DPLACE[KnM] >D:DWORD[KnY]", steps=9, section="FNC 81", models=FX, check=_round_numbers)
+@command("FX:PRUN M", "S:PLACE[KnM]~ >D:WORD[KnY]", steps=5, section="FNC 81", models=FX, check=_round_numbers)
+@command("FX:DPRUN M", "S:DPLACE[KnM]~ >D:DWORD[KnY]", steps=9, section="FNC 81", models=FX, check=_round_numbers)
 def prun_of_relays(machine, group):
     """The outputs from D on take the relays M from S on, by number: M0 to M7 go to Y0 to Y7, M10 to M17 to Y10 to Y17."""
     relays = machine.memory.lists[group.area]
