@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from ecsim.engines import Trace
 from ecsim.views.conditions import compare_words, phrase
 from ecsim.views.flows import Transition
+from ecsim.views.labels import EDGES as CONTACTS
 from ecsim.views.labels import Labels, compares, inverted
 from ecsim.views.rungs import Block, Contact, Gate, Item, Parallel, Series, Word
 
@@ -56,6 +57,8 @@ def _phrase(part: tuple[Item, ...], labels: Labels) -> Phrase:
     first = part[0]
     if isinstance(first, Contact) and not compares(first.word):
         label = labels.contact(first.word)
+        if len(part) == 1 and first.word.mnemonic in CONTACTS:
+            return label.name, label.address, EDGES[CONTACTS[first.word.mnemonic]]
         if len(part) == 1:
             return label.name, label.address, "off" if inverted(first.word) else "on"
         if len(part) == 2 and isinstance(part[1], Gate) and part[1].word.mnemonic in EDGES and not inverted(first.word):

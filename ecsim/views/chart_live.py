@@ -13,7 +13,7 @@ from ..models import Model
 from .chart_layout import Node
 from .conditions import Condition
 from .flows import Action, Transition
-from .labels import constant_value, figure, operand_type, reader
+from .labels import closing, constant_value, figure, operand_type, reader
 from .symbols import counts
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ class Waiting:
             if definition.form == "contact":
                 readers = [reader(operand, operand_type(word, place), model) for place, operand in enumerate(word.operands)]
                 constants = [constant_value(operand) for operand in word.operands]
-                self.contacts.append((word.position, definition.function, readers, constants))
+                self.contacts.append((word.position, closing(word), readers, constants))
             else:
                 self.edges.append(word.position)
         self.wired = sorted({wire[4] for wire in condition.placed.wires}) if condition.placed else []

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from . import svg as s
 from .flows import single
-from .labels import Label, Labels, compares, inverted, sign
+from .labels import EDGES, Label, Labels, compares, inverted, sign
 from .layout import Layout, Placed, Size
 from .lettering import cut, width
 from .rungs import Block, Contact, Gate, Item, Parallel, Series, Word
@@ -62,7 +62,10 @@ def _contact(word: Word, labels: Labels) -> str:
     if compares(word):
         return compare_words(word, labels)
     label = labels.contact(word)
-    return ("not " if inverted(word) else "") + (label.name or label.address)
+    name = label.name or label.address
+    if word.mnemonic in EDGES:
+        return f"{name} {'rises' if EDGES[word.mnemonic] == 'EU' else 'falls'}"
+    return f"not {name}" if inverted(word) else name
 
 
 def compare_words(word: Word, labels: Labels) -> str:
@@ -138,7 +141,8 @@ class Condition:
     def _single(self, prefix: str) -> str:
         word, edge = self.one
         label = self.labels.contact(word)
-        mark = gate_path(edge, 13, 0, 0.68) if edge else ""
+        pulse = edge.mnemonic if edge else EDGES.get(word.mnemonic)
+        mark = gate_path(pulse, 13, 0, 0.68) if pulse else ""
         slash = "M9 6.5l8 -13" if inverted(word) else ""
         content = bars(8, 0, 10, 16) + (s.element("path", None, class_="mod", d=slash + mark) if slash or mark else "")
         address = f'<tspan class="el-addr{"" if label.name else " alone"}">{s.escape(label.address)}</tspan>'
@@ -163,13 +167,16 @@ class Condition:
         word, size = symbol.item.word, symbol.size
         x, y = symbol.x + size.enter, symbol.y
         if isinstance(symbol.item, Gate):
-            content = bars(x, y, 10, 16) + s.element("path", None, class_="mod", d=gate_path(word, x + 5, y, 0.68))
+            content = bars(x, y, 10, 16) + s.element("path", None, class_="mod", d=gate_path(word.mnemonic, x + 5, y, 0.68))
         elif compares(word):
             room = size.leave - size.enter
             content = bars(x, y, room, 18) + s.text(x + room / 2, y + 4, compare_words(word, self.labels), "el-name mid")
         else:
             label = self.labels.contact(word)
-            slash = s.element("path", None, class_="mod", d=f"M{s.number(x + 1)} {s.number(y + 6.5)}l8 -13") if inverted(word) else ""
+            mark = f"M{s.number(x + 1)} {s.number(y + 6.5)}l8 -13" if inverted(word) else ""
+            if word.mnemonic in EDGES:
+                mark = gate_path(EDGES[word.mnemonic], x + 5, y, 0.68)
+            slash = s.element("path", None, class_="mod", d=mark) if mark else ""
             address = f'<tspan class="el-addr{"" if label.name else " alone"}">{s.escape(label.address)}</tspan>'
             name = cut(label.name, LONGEST - width(label.address, 11, True) - 4) + " " if label.name else ""
             content = bars(x, y, 10, 16) + slash + s.element("text", s.escape(name) + address, class_="el-name mid", x=x + 5, y=y - 12)

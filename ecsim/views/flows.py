@@ -32,7 +32,7 @@ class Action:
     @property
     def qualifier(self) -> str:
         """N, S or R for a coil, the mnemonic for a box."""
-        return QUALIFIERS.get(self.word.mnemonic, self.word.mnemonic)
+        return QUALIFIERS.get(self.word.mnemonic, self.word.name)
 
 
 @dataclass(frozen=True)

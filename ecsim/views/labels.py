@@ -15,6 +15,8 @@ from .rungs import Word
 COILS = {"OUT": "", "SET": "S", "RST": "R"}
 # What an element that changes the flow is called.
 GATES = {"EU": "rising", "ED": "falling", "INV": "inverted"}
+# Contacts that wait for an edge of their device, as a contact with that gate behind it.
+EDGES = {"FX:LDP": "EU", "FX:LDF": "ED"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,21 +147,26 @@ def sign(word: Word, pretty: bool = True) -> str:
 
 def compares(word: Word) -> bool:
     """Whether a contact compares two values."""
-    return not word.mnemonic.isalnum()
+    return word.mnemonic[-1] in "=<>"
+
+
+def closing(word: Word) -> Callable[..., bool]:
+    """What tells from the values of its operands whether a contact is closed; an edge is there for one scan only."""
+    return (lambda *values: False) if word.mnemonic in EDGES else TABLE[word.mnemonic].function
 
 
 def contact_words(word: Word, labels: Labels) -> str:
     """A contact in words: "X5 Start, normally closed", "D10 Count < 12"."""
     if compares(word):
         return f"{_spoken(labels.of(word, 0))} {sign(word)} {_spoken(labels.of(word, 1))}"
-    what = "normally closed" if inverted(word) else "normally open"
+    edge = EDGES.get(word.mnemonic)
+    what = f"{GATES[edge]} edge" if edge else "normally closed" if inverted(word) else "normally open"
     return f"{_spoken(labels.contact(word))}, {what}"
 
 
 def inverted(word: Word) -> bool:
     """Whether a contact of one bit is closed while the bit is OFF."""
-    definition = TABLE[word.mnemonic]
-    return bool(definition.function(*[False] * len(definition.operands)))
+    return bool(closing(word)(*[False] * len(TABLE[word.mnemonic].operands)))
 
 
 def output_words(word: Word, labels: Labels) -> str:
@@ -168,7 +175,7 @@ def output_words(word: Word, labels: Labels) -> str:
     if word.mnemonic in COILS:
         kind = {"": "coil", "S": "set coil", "R": "reset coil"}[COILS[word.mnemonic]]
         return f"{spoken[0]}, {kind}"
-    return " ".join([word.mnemonic, *spoken])
+    return " ".join([word.name, *spoken])
 
 
 def _spoken(label: Label) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
-from ..assembler.program import Network, Program, Unit
+from ..assembler.program import Network, Program, Unit, is_label
 from ..devices import Bits, Device
 from ..instructions import TABLE
 from ..models import Model, get_model
@@ -386,7 +386,7 @@ class Sheet:
             return ""
         kind, number = region[-1]
         if kind != "STL":
-            return s.text(18, strip.top + 32, f"{kind} {number}" if kind == "MC" else kind, "step-no")
+            return s.text(18, strip.top + 32, f"{kind} {level(self.model, number)}" if kind == "MC" else kind, "step-no")
         box = s.element("rect", None, class_="box", x=12, y=strip.top + 21, width=40, height=20, rx=2)
         return s.element("g", box + s.text(32, strip.top + 35, f"S{number}", "step-id small"), id=f"{prefix}m{strip.number}", class_="step")
 
@@ -438,7 +438,7 @@ class Sheet:
                     yield s.text(x + size + 8, y + 4, label.name, "el-name")
                     size += 8 + width(label.name)
             else:
-                letters = f"{word.mnemonic} {label.address}" if label else word.mnemonic
+                letters = str(word) if is_label(word.name, word.written) else f"{word.name} {label.address}" if label else word.name
                 size = max(84, width(letters, 12, True) + 24)
                 frame = s.element("rect", None, class_="frame", x=x, y=y - 14, width=size, height=28, rx=2)
                 yield symbols.group(frame + s.text(x + 12, y + 4.5, letters, "op"), "fbox open", word, strip.entry.labels, prefix)
@@ -465,6 +465,11 @@ def is_drawn(rung: Rung) -> bool:
     return not is_bus(rung) and depth(rung.flow) <= DEEPEST
 
 
+def level(model: Model, number: int) -> str:
+    """The number of a structure as the family writes it: 3, N3."""
+    return f"{model.syntax.pointers.get('NEST', '')}{number}"
+
+
 def is_step(word: Word) -> bool:
     """Whether it opens a step."""
     return bool(word.operands) and TABLE[word.mnemonic].operands[0].kind == "STEP"
@@ -485,6 +490,6 @@ def remarks(entry: Entry) -> list[str]:
     found = []
     for word in entry.words:
         if word.comment:
-            about = str(entry.labels.of(word, 0)) if word.operands else word.mnemonic
+            about = str(entry.labels.of(word, 0)) if word.operands else word.name
             found.append(f"{about}: {word.comment}")
     return found

@@ -16,7 +16,7 @@ from ..engines import Trace
 from ..instructions import TABLE
 from ..memory import Memory
 from ..models import Model
-from .labels import COILS, compares, constant_value, figure, operand_type, reader
+from .labels import COILS, closing, compares, constant_value, figure, operand_type, reader
 from .layout import Placed
 from .rungs import Contact, Output, Word
 from .svg import number
@@ -77,7 +77,7 @@ class Live:
             self.bits.append((f"{holds.area}B" if holds.area in ("T", "C") else holds.area, holds.number))
         if definition.form == "contact":
             constants = [constant_value(operand) for operand in word.operands]
-            self.contacts.append((word.position - self.first, definition.function, readers, constants))
+            self.contacts.append((word.position - self.first, closing(word), readers, constants))
         if word.mnemonic in COILS:
             if COILS[word.mnemonic]:
                 self.values.append((f"b{word.position}", readers[0], None, 0))

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ..assembler.program import is_label
 from .canvas import Canvas
-from .labels import COILS, Label, Labels, compares, inverted, sign
+from .labels import COILS, EDGES, Label, Labels, compares, inverted, sign
 from .layout import Layout, Size, Symbol
 from .lettering import columns, padded
 from .rungs import Gate, Output, Word
@@ -62,13 +63,15 @@ def contact_text(word: Word) -> str:
     """A contact between its bars."""
     if compares(word):
         return f"┤{word.operands[0]} {sign(word)} {word.operands[1]}├"
+    if word.mnemonic in EDGES:
+        return f"┤{_GATES[EDGES[word.mnemonic]]}├"
     return "┤/├" if inverted(word) else "┤ ├"
 
 
 def box_text(word: Word, labels: Labels) -> str:
     """A function box on one line: the mnemonic and its operands."""
     operands = [_inline(labels.of(word, place)) for place in range(len(word.operands))]
-    return f"[{' '.join([word.mnemonic, *operands])}]"
+    return f"[{' '.join([word.name, *operands])}]"
 
 
 def _inline(label: Label) -> str:
@@ -169,7 +172,7 @@ def _symbol(canvas: Canvas, labels: Labels, symbol: Symbol, rail: int, wire: int
 
 def _bus(canvas: Canvas, entry: Entry, rail: int, row: int) -> int:
     words = entry.rung.words
-    letters = "".join(f"[{' '.join([w.mnemonic, *(_inline(entry.labels.of(w, n)) for n in range(len(w.operands)))])}]" for w in words)
+    letters = "".join(f"[{w}]" if is_label(w.name, w.written) else box_text(w, entry.labels) for w in words)
     canvas.horizontal(row, rail, rail + RAIL_STEP + 2)
     canvas.write(row, rail + RAIL_STEP + 2, letters)
     return row + 1

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from html import escape
 
-from ..assembler.program import Instruction, Program, Region, Unit
-from ..devices import Bits, Constant, Device, Name
+from ..assembler.program import Instruction, Program, Region, Unit, is_label
+from ..devices import Bits, Constant, Device, IndexedConstant, Name
 from . import svg as s
 from .labels import Labels
 from .lettering import columns, padded
@@ -48,8 +48,10 @@ class Listing:
         if isinstance(part, Program):
             self.rows += self._globals(part)
             bare = len(part.units) == 1 and not part.variables
+            pointers = bool(part.model.syntax.pointers)  # units begin and end with instructions of their own
             for unit in part.units:
-                self.rows += self._unit(unit, headed=not bare)
+                self.rows += [BLANK] if pointers and self.rows else []
+                self.rows += self._unit(unit, headed=not (bare or pointers))
         else:
             self.rows += self._unit(part, headed=False)
 
@@ -95,12 +97,10 @@ class Listing:
             yield _keyword(f"END_{word}")
 
     def _instruction(self, instruction: Instruction, labels: Labels, region: tuple[int, ...]) -> Row:
-        words = [
-            (
-                "step" if _opens(instruction) else "op",
-                padded(instruction.spelled or instruction.mnemonic, MNEMONIC - 1 if instruction.written else 0),
-            )
-        ]
+        if is_label(instruction.name, instruction.written):
+            label = (("op", str(instruction)),)
+            return Row(instruction.line, instruction.step, label, instruction.comment, f"l{instruction.position}", region)
+        words = [("step" if _opens(instruction) else "op", padded(instruction.name, MNEMONIC - 1 if instruction.written else 0))]
         for text, operand in zip(instruction.written, instruction.operands, strict=True):
             kind, text = _device(text, operand)
             words += [("", " "), (kind, text)]
@@ -184,7 +184,7 @@ def _keyword(words: str) -> Row:
 
 def _device(text: str, operand) -> tuple[str, str]:
     """The kind of an operand as it is coloured, and its text."""
-    if isinstance(operand, Constant):
+    if isinstance(operand, Constant | IndexedConstant):
         return "number", text
     if isinstance(operand, Device) and operand.area == "S":
         return "step", text

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 
-from ..assembler.program import Instruction, Network, Program, Unit
+from ..assembler.program import Instruction, Network, Program, Unit, wording
 from ..devices import Operand
 from ..instructions import TABLE
 
@@ -31,8 +31,13 @@ class Word:
     position: int = field(default=-1, compare=False)
     step: int = field(default=-1, compare=False)
 
+    @property
+    def name(self) -> str:
+        """The mnemonic as its family writes it."""
+        return self.spelled or self.mnemonic
+
     def __str__(self) -> str:
-        return " ".join((self.spelled or self.mnemonic, *self.written))
+        return wording(self.name, self.written)
 
 
 @dataclass(frozen=True, slots=True)

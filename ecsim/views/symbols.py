@@ -4,7 +4,7 @@ from ..devices import Bits, Constant, Device, Name
 from ..instructions import TABLE
 from ..models import Model
 from . import svg as s
-from .labels import COILS, GATES, Label, Labels, constant_value, contact_words, figure, inverted, output_words, sign
+from .labels import COILS, EDGES, GATES, Label, Labels, constant_value, contact_words, figure, inverted, output_words, sign
 from .lettering import cut, width
 from .rungs import Word
 
@@ -18,24 +18,28 @@ COUNTING = frozenset({"TIMER", "COUNTER", "DCOUNTER", "HCOUNTER"})
 
 def contact(word: Word, labels: Labels, x: float, y: float, room: float) -> str:
     """A contact with its middle at (x, y), its name and address above."""
-    slash = s.element("path", None, class_="mod", d=f"M{s.number(x - 6)} {s.number(y + 9)}l12 -18") if inverted(word) else ""
-    return bars(x - 8, y, 16, 24) + slash + above(labels.contact(word), x, y, room)
+    mark = f"M{s.number(x - 6)} {s.number(y + 9)}l12 -18" if inverted(word) else ""
+    if word.mnemonic in EDGES:
+        mark = gate_path(EDGES[word.mnemonic], x, y, 1)
+    return (
+        bars(x - 8, y, 16, 24) + (s.element("path", None, class_="mod", d=mark) if mark else "") + above(labels.contact(word), x, y, room)
+    )
 
 
 def gate(word: Word, x: float, y: float) -> str:
     """An element that changes the flow: an arrow for an edge, a stroke for the inversion, and its word."""
     return (
         bars(x - 8, y, 16, 24)
-        + s.element("path", None, class_="mod", d=gate_path(word, x, y, 1))
+        + s.element("path", None, class_="mod", d=gate_path(word.mnemonic, x, y, 1))
         + s.text(x, y - 19, GATES[word.mnemonic], "el-edge mid")
     )
 
 
-def gate_path(word: Word, x: float, y: float, scale: float) -> str:
-    """The mark between the bars of a gate; scale 1 in the ladder, smaller in a chart."""
-    if word.mnemonic == "INV":
+def gate_path(gate: str, x: float, y: float, scale: float) -> str:
+    """The mark between the bars of a gate (EU, ED, INV); scale 1 in the ladder, smaller in a chart."""
+    if gate == "INV":
         return f"M{s.number(x - 5 * scale)} {s.number(y)}h{s.number(10 * scale)}"
-    up = 1 if word.mnemonic == "EU" else -1
+    up = 1 if gate == "EU" else -1
     head = 4 * scale
     return (
         f"M{s.number(x)} {s.number(y + up * 8 * scale)}V{s.number(y - up * 7 * scale)}"
@@ -131,7 +135,7 @@ def box_height(word: Word) -> tuple[float, float]:
 
 def box_head(word: Word) -> str:
     """What is printed bold in a box: the mnemonic, of a call with the routine's name."""
-    return " ".join([word.mnemonic, *(str(operand) for operand in word.operands[:1] if isinstance(operand, Name))])
+    return " ".join([word.name, *(str(operand) for operand in word.operands[:1] if isinstance(operand, Name))])
 
 
 def box_lines(word: Word) -> list[int]:
@@ -178,7 +182,7 @@ def _counting(word: Word, labels: Labels, x: float, y: float, prefix: str, model
     value = f'<tspan id="{prefix}v{word.position}.0"></tspan><tspan class="dim"> of {preset}</tspan>'
     return "".join(
         [
-            s.text(x + PAD, y - 5, word.mnemonic, "op"),
+            s.text(x + PAD, y - 5, word.name, "op"),
             s.text(right, y - 5, f"{base:g} ms" if base else "", "el-addr end"),
             beside(labels.of(word, 0), x + PAD, y + 16, BOX - 2 * PAD - value_room(word)),
             s.element("text", value, class_="el-value end", x=right, y=y + 16),
