@@ -39,6 +39,7 @@ SLOW = 0.3  # m/s, the left belt
 FAST = 0.6  # m/s, strands, rollers and right belt
 GATE_S = 0.5
 LIFT_S = 1.2
+SLOWED = 4  # so many times as long travels a lift whose valve is throttled
 
 # Where a pallet's front must come for something to change: its speed, what carries it, or a switch.
 MARKS = tuple(
@@ -62,8 +63,10 @@ class Incident(NamedTuple):
     what: str
 
 
-def stroke(place, valve, seconds):
+def stroke(place, valve, seconds, jams):
     """How a cylinder at `place` of its travel goes on: its place, and its rate a second towards the end its valve says."""
+    if jams:
+        return place, 0.0
     if valve:
         return (max(place, START), 1 / seconds) if place < 1 else (1.0, 0.0)
     return (min(place, 1 - START), -1 / seconds) if place > 0 else (0.0, 0.0)
@@ -90,6 +93,15 @@ class Conveyor(Machine):
         "Y3": Point("Rollers", "transfer rollers of both lifts"),
         "Y4": Point("BeltL", "left belt and the strands in the left lift"),
         "Y5": Point("BeltR", "right belt and the strands in the right lift"),
+    }
+    FAULTS: ClassVar[dict[str, str]] = {
+        "no pallets": "no more pallets come",
+        "pallet sticks": "the pallet ahead stays where it is, whatever turns under it",
+        "gate jams": "the gate stays where it is",
+        "left lift stops": "the left lift stays where it is",
+        "right lift stops": "the right lift stays where it is",
+        "right lift slow": "the valve of the right lift is throttled: it takes four times as long",
+        "no rollers": "the rollers have no drive",
     }
     DRIVES: ClassVar[tuple[str, ...]] = ("Y0", "Y1", "Y2", "Y3", "Y4", "Y5")
     EXACT: ClassVar[tuple[str, ...]] = ("gate", "left", "right", "fronts")
@@ -145,9 +157,11 @@ class Conveyor(Machine):
         gate_valve, left_valve, right_valve, rollers, belt_left, belt_right = self._outputs
         if not gate_valve and self.gate == 1:
             gate_valve = self._over_gate(amiss)
-        self.gate, gate_rate = stroke(self.gate, gate_valve, GATE_S)
-        self.left, left_rate = stroke(self.left, left_valve, LIFT_S)
-        self.right, right_rate = stroke(self.right, right_valve, LIFT_S)
+        faults = self.faults
+        self.gate, gate_rate = stroke(self.gate, gate_valve, GATE_S, "gate jams" in faults)
+        self.left, left_rate = stroke(self.left, left_valve, LIFT_S, "left lift stops" in faults)
+        right_s = LIFT_S * (SLOWED if "right lift slow" in faults else 1)
+        self.right, right_rate = stroke(self.right, right_valve, right_s, "right lift stops" in faults)
         pallets = self._drive_pallets(amiss)
         self._rates = (
             gate_rate,
@@ -155,7 +169,7 @@ class Conveyor(Machine):
             right_rate,
             SLOW if belt_left else 0.0,
             FAST if belt_right else 0.0,
-            FAST if rollers else 0.0,
+            FAST if rollers and "no rollers" not in faults else 0.0,
         )
         self._speeds = tuple(speed for speed, _ in pallets)
         self._report(amiss)
@@ -172,7 +186,7 @@ class Conveyor(Machine):
             self.fronts = self.fronts[1:]
             self.delivered += 1
         rear = self.fronts[-1] - PALLET
-        if rear >= ARRIVAL:
+        if rear >= ARRIVAL and "no pallets" not in self.faults:
             number = self.delivered + len(self.fronts)  # of the last one; pallets count from 1
             distance = self.distances[(number - 1) % len(self.distances)]
             self.fronts += (round(rear - distance, DIGITS),)
@@ -210,7 +224,10 @@ class Conveyor(Machine):
         if rear_height != front_height:
             amiss.add((number, "tips"))
             return 0.0
+        if number == self.delivered + 1 and "pallet sticks" in self.faults:
+            return 0.0
         _, _, _, rollers, belt_left, belt_right = self._outputs
+        rollers = rollers and "no rollers" not in self.faults
         centre = round(front - PALLET / 2, DIGITS)
         if centre < LEFT_BED:
             speed = SLOW if belt_left else 0.0

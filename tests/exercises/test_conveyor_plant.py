@@ -341,3 +341,88 @@ def test_pallets_that_cannot_stand_there_are_refused(wrong):
 def test_an_output_that_the_program_does_not_have_is_named():
     with pytest.raises(KeyError, match="Y5"):
         Conveyor().step(0.01, {"Y0": 0, "Y1": 0, "Y2": 0, "Y3": 0, "Y4": 0})
+
+
+# ---- faults of the machine ---------------------------------------------------------------------------------------------
+
+
+UP = {"Y1": 1, "Y2": 1, "Y4": 1}
+
+
+@pytest.mark.parametrize(
+    "fault, left, right, up",
+    [
+        ("left lift stops", 0.5, 1.0, 0),
+        ("right lift stops", 1.0, 0.5, 0),
+        ("right lift slow", 1.0, 0.5 + 1.2 / 4.8, 0),  # 1.2 s more at a quarter of the speed
+        ("gate jams", 1.0, 1.0, 1),
+    ],
+)
+def test_a_lift_that_fails_keeps_the_switches_from_closing(fault, left, right, up):
+    plant = Conveyor()
+    hold(plant, 0.6, **UP)  # halfway
+    plant.fail(fault)
+    switches = hold(plant, 1.2, **UP)
+    assert (plant.left, plant.right, switches["X2"]) == (pytest.approx(left, abs=1e-5), pytest.approx(right, abs=1e-5), up)
+    plant.fail(fault, on=False)
+    assert hold(plant, 0.6, **UP)["X2"] == 1
+    assert plant.incidents == ()
+
+
+def test_a_jammed_gate_lets_no_pallet_in():
+    plant = Conveyor(distances=(20.0,))
+    plant.fail("gate jams")
+    hold(plant, 10, Y0=1, Y4=1)
+    assert (plant.gate, plant.fronts[0]) == (0.0, conveyor.GATE)
+
+
+def test_rollers_without_drive_leave_the_pallet_on_the_left_lift():
+    plant = Conveyor(distances=(20.0,))
+    for inputs, _ in play(plant, 20):
+        if inputs["X2"]:
+            break
+    plant.fail("no rollers")
+    standing = plant.fronts[0], plant.rollers_m
+    hold(plant, 5, Y3=1, **UP)
+    assert (plant.fronts[0], plant.rollers_m) == standing
+    plant.fail("no rollers", on=False)
+    hold(plant, 1, Y3=1, **UP)
+    assert plant.fronts[0] == pytest.approx(standing[0] + conveyor.FAST)
+
+
+def test_a_pallet_that_sticks_holds_up_the_next_one():
+    plant = Conveyor(distances=(0.5,), first=1.8)
+    plant.fail("pallet sticks")
+    hold(plant, 10, Y0=1, Y4=1)
+    assert plant.fronts[:2] == (1.8, pytest.approx(1.8 - conveyor.PALLET))
+    plant.fail("pallet sticks", on=False)
+    hold(plant, 2, Y4=1)
+    assert plant.fronts[:2] == (pytest.approx(1.8 + 2 * conveyor.SLOW), pytest.approx(1.8 + 2 * conveyor.SLOW - conveyor.PALLET))
+
+
+def test_without_pallets_the_line_runs_empty():
+    plant = Conveyor()
+    plant.fail("no pallets")
+    for _ in play(plant, 60):
+        pass
+    assert plant.seconds == pytest.approx(60) and plant.fronts[0] - conveyor.PALLET > conveyor.DEPARTURE
+    assert len(plant.fronts) == 1
+
+
+@pytest.mark.parametrize("fault", Conveyor.FAULTS)
+def test_the_length_of_the_steps_changes_nothing_in_a_fault(fault):
+    stories = []
+    for step in (0.01, 0.37):
+        plant, outputs = Conveyor(), BELTS | {"Y0": 1, "Y1": 1, "Y3": 1}
+        for _ in range(round(3.7 / step)):
+            plant.step(step, outputs)
+        plant.fail(fault)
+        for _ in range(round(7.4 / step)):
+            plant.step(step, outputs)
+        plant.fail(fault, on=False)
+        for _ in range(round(7.4 / step)):
+            plant.step(step, outputs)
+        stories.append((plant.fronts, plant.left, plant.gate, plant.delivered, plant.inputs, plant.incidents))
+    assert stories[0][2:5] == stories[1][2:5]
+    assert stories[0][0] == pytest.approx(stories[1][0]) and stories[0][1] == pytest.approx(stories[1][1])
+    assert [incident.what for incident in stories[0][5]] == [incident.what for incident in stories[1][5]]
