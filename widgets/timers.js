@@ -65,7 +65,7 @@ panels.timers = (place, layout, page) => {
     set(line.querySelector(".wire"), "class", on ? "wire on" : "wire");
     set(line.querySelector(".mini"), "aria-label", on ? "contact closed" : "contact open");
     set(line.querySelector(".mini"), "data-on", on ? "" : null);
-    draw(line.querySelector(".gauge"), value, preset, one.unit === "counter", one.kind === "DCNT" || one.kind === "HCNT");
+    draw(line.querySelector(".gauge"), value, preset, one.unit === "counter", one.signed);
     const say = line.querySelector(".say");
     const words = bold(state[`${one.device}.say`] ?? "");
     if (say.dataset.words !== words) say.innerHTML = say.dataset.words = words;

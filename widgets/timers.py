@@ -14,6 +14,8 @@ KINDS = {
     "DCNT": "counter",
     "HCNT": "counter",
 }
+# Coils that are one of these by the number of their device.
+LIKE = {"FX:OUT T": "TON", "FX:OUT T246": "TONR", "FX:OUT C": "CTU", "FX:OUT C200": "DCNT", "FX:OUT C235": "HCNT"}
 BASES = {100_000: "100 ms", 10_000: "10 ms", 1_000: "1 ms"}
 
 
@@ -107,6 +109,11 @@ def frequency(hz: float) -> str:
     return f"{hz / 1000:,.1f} kHz" if hz >= 1000 else f"{hz:.0f} Hz"
 
 
+def kind(instruction) -> str:
+    """What drives a timer or counter, by EC's name of it."""
+    return LIKE.get(instruction.mnemonic, instruction.mnemonic)
+
+
 class Timers(Part):
     """A row for each timer and counter that the program drives, in the order of their numbers."""
 
@@ -115,12 +122,12 @@ class Timers(Part):
     def __init__(self, rig):
         super().__init__(rig)
         self.rows = self._rows()
-        self._rates = {device: Rate() for device, (_, instruction) in self.rows.items() if instruction.mnemonic == "HCNT"}
+        self._rates = {device: Rate() for device, (_, instruction) in self.rows.items() if kind(instruction) == "HCNT"}
 
     def _rows(self):
         rows = {}
         for instruction in self.rig.instructions:
-            unit = KINDS.get(instruction.mnemonic)
+            unit = KINDS.get(kind(instruction))
             if unit and str(instruction.operands[0]) not in rows:
                 rows[str(instruction.operands[0])] = (unit, instruction)
         return dict(sorted(rows.items(), key=lambda row: (row[1][0] != "timer", row[1][1].operands[0].number)))
@@ -135,8 +142,9 @@ class Timers(Part):
                 {
                     "device": device,
                     "name": self.rig.name(device),
-                    "kind": instruction.mnemonic,
+                    "kind": instruction.name,
                     "unit": unit,
+                    "signed": kind(instruction) in WIDE,
                     "base": BASES.get(base_us, "") or self._counts_what(instruction),
                     "base_us": base_us,
                     "steps": ", ".join(map(str, used[:4])) + (", …" if len(used) > 4 else ""),
@@ -146,8 +154,8 @@ class Timers(Part):
 
     def _counts_what(self, instruction):
         """What stands in place of a time unit: "ring", or the inputs that a high-speed counter counts."""
-        fast = self.rig.plc.model.fast_counters.get(instruction.operands[0].number) if instruction.mnemonic == "HCNT" else None
-        return " ".join(f"X{number:o}" for number in fast.inputs) if fast else "ring" if instruction.mnemonic == "CTR" else ""
+        fast = self.rig.plc.model.fast_counters.get(instruction.operands[0].number) if kind(instruction) == "HCNT" else None
+        return " ".join(f"X{number:o}" for number in fast.inputs) if fast else "ring" if kind(instruction) == "CTR" else ""
 
     def _direction(self, instruction):
         """The relay that makes an up/down counter count down while it is ON, if it is ON."""
@@ -164,10 +172,10 @@ class Timers(Part):
             value, preset, on = self._now(device, instruction)
             entries[device], entries[f"{device}.preset"], entries[f"{device}.on"] = value, preset, int(on)
             flow = self.rig.flow(instruction.position)
-            entries[f"{device}.is"], entries[f"{device}.say"] = WORDS[instruction.mnemonic](
+            entries[f"{device}.is"], entries[f"{device}.say"] = WORDS[kind(instruction)](
                 value, preset, on, flow, self._base_us(unit, instruction)
             )
-            if instruction.mnemonic == "DCNT" and (relay := self._direction(instruction)):
+            if kind(instruction) == "DCNT" and (relay := self._direction(instruction)):
                 entries[f"{device}.say"] = f"*{relay} on*, counts down"
             if device in self._rates:
                 hz = self._rates[device].see(self.rig.plc.time_us, value)
@@ -176,7 +184,7 @@ class Timers(Part):
         return entries
 
     def _now(self, device, instruction):
-        preset = self.rig.value(instruction.operands[1], wide=instruction.mnemonic in WIDE)
+        preset = self.rig.value(instruction.operands[1], wide=kind(instruction) in WIDE)
         return self.rig.plc[device], preset, self.rig.bit(device)
 
     def _step(self, device):

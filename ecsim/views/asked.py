@@ -9,7 +9,7 @@ from ..instructions import TABLE
 from ..models import Model
 from ..values import BOOL, DataType
 from .flows import leaves
-from .labels import COILS, compares, inverted, operand_type, sign
+from .labels import COILS, EDGES, compares, inverted, operand_type, sign
 from .rungs import Block, Contact, Fork, Item, Parallel, Rung, Series, Word
 from .symbols import counts
 
@@ -81,7 +81,7 @@ def _contact(word: Word, model: Model) -> str:
     if compares(word):
         left, right = (_operand(operand, operand_type(word, place), model) for place, operand in enumerate(word.operands))
         return f"{left} {sign(word, pretty=False).lstrip('DR')} {right}" if left and right else ""
-    bit = _operand(word.operands[0], BOOL, model) if len(word.operands) == 1 else ""
+    bit = _operand(word.operands[0], BOOL, model) if len(word.operands) == 1 and word.mnemonic not in EDGES else ""
     return f"not {bit}" if bit and inverted(word) else bit
 
 

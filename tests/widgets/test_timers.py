@@ -1,6 +1,10 @@
 """Timers and counters in use, from a running program."""
 
+from ecsim_widgets.rig import Rig
 from ecsim_widgets.timers import Timers
+
+from ecsim.plc import Plc
+from ecsim.session import Session
 
 
 def test_a_row_for_each_timer_and_counter_with_name_kind_base_and_steps(rig):
@@ -85,3 +89,21 @@ def test_an_up_down_counter_says_which_relay_makes_it_count_down(make_rig):
 
 def test_a_ring_counter_says_so(make_rig):
     assert Timers(make_rig(program="LD X0\nCTR C1 4\n")).layout()["rows"][0]["base"] == "ring"
+
+
+def test_coils_of_the_fx_family_are_told_by_the_class_of_their_number():
+    plc = Plc("H2U", scan_ms=10, input_filter_ms=0)
+    plc.load("LD X0\nOUT T250 K20\nLD X1\nOUT C200 K-3\nLD X2\nOUT C0 K5")
+    plc.run()
+    rig = Rig(plc, Session(plc))
+    rows = Timers(rig).layout()["rows"]
+    assert [(row["device"], row["kind"], row["unit"], row["signed"]) for row in rows] == [
+        ("T250", "OUT", "timer", False),
+        ("C0", "OUT", "counter", False),
+        ("C200", "OUT", "counter", True),
+    ]
+    rig.plc.set({"X0": 1, "X1": 1, "X2": 1, "M8200": 1})
+    rig.session.scan(51)  # the first one starts the timer
+    frame = Timers(rig).frame()
+    assert (frame["T250"], frame["T250.preset"], frame["C0"], frame["C200"], frame["C200.preset"]) == (5, 20, 1, -1, -3)
+    assert frame["C200.say"].startswith("*M8200 on*")
