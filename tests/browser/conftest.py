@@ -76,6 +76,7 @@ def server(root, tmp_path_factory):
     }
     port, token = free_port(), secrets.token_hex(16)
     command = [sys.executable, "-m", "jupyterlab", "--no-browser", "--expose-app-in-browser", "--ServerApp.ip=127.0.0.1"]
+    command += ["--JupyterNotebookApp.expose_app_in_browser=True"]  # the same server has Notebook 7, under /notebooks
     command += [
         f"--ServerApp.port={port}",
         "--ServerApp.port_retries=0",
@@ -153,16 +154,19 @@ class Notebook:
 
 @pytest.fixture(scope="session")
 def open_notebook(root, server, browser):
-    """Open a copy of a notebook (of notebooks/, or any by its whole path), each with a kernel of its own, ready and connected."""
+    """Open a copy of a notebook (of notebooks/, or any by its whole path), each with a kernel of its own, ready and connected.
+
+    `app` is "lab/tree" for JupyterLab, "notebooks" for Notebook 7.
+    """
     pages = []
 
-    def open_it(name, width=1280, height=900):
+    def open_it(name, width=1280, height=900, app="lab/tree"):
         copy = f"{len(pages)}-{Path(name).name}"
         shutil.copy(root / "notebooks" / name, server.folder / copy)
         page = browser.new_page(viewport={"width": width, "height": height})
         page.set_default_timeout(60_000)
         pages.append(page)
-        page.goto(f"{server.address}/lab/tree/{copy}?token={server.token}&reset")
+        page.goto(f"{server.address}/{app}/{copy}?token={server.token}&reset")
         page.wait_for_function(CONNECTED)
         return Notebook(page)
 
