@@ -1,11 +1,19 @@
 // The sequential function chart: active steps lit, what the selected one waits for in words, and the log of steps taken.
 
+const ZOOMS = [0.5, 0.67, 0.8, 1, 1.25, 1.5];
+
 panels.chart = (place, layout, page, view) => {
-  const tools = `<button class="tool" data-act="hold" data-testid="hold" aria-pressed="false" title="Hold all transitions: the steps stay though conditions are met">${icon("hold")}Hold<span class="more"> transitions</span></button>`;
+  const tools = `<button class="tool" data-act="hold" data-testid="hold" aria-pressed="false" title="Hold all transitions: the steps stay though conditions are met">${icon("hold")}Hold<span class="more"> transitions</span></button>
+    <span class="zoom" role="group" aria-label="Zoom"><button class="tool" data-zoom="-1" data-testid="zoom-out" aria-label="Smaller" title="Smaller (−)">−</button><button class="tool" data-zoom="1" data-testid="zoom-in" aria-label="Larger" title="Larger (+)">+</button></span>
+    <button class="tool" data-act="follow" data-testid="chart-follow" aria-pressed="true" title="Keep the active step in view">${icon("follow")}Follow</button>`;
   const { section, body, sub } = frame(place, { title: "Chart", key: "chart", tools });
   body.classList.add("split");
+  section.insertAdjacentHTML(
+    "beforeend",
+    `<footer class="panel-foot"><span class="key"><svg class="ec sfc" width="26" height="20" aria-hidden="true"><g class="step active"><rect class="box" x="1" y="1" width="24" height="18" rx="2"/><circle class="token" cx="13" cy="10" r="3"/></g></svg>active</span><span class="key"><svg class="ec sfc" width="26" height="20" aria-hidden="true"><path class="tbar enabled" d="M1 10H25"/></svg>waits for its condition</span><span class="key"><svg class="ec sfc" width="26" height="20" aria-hidden="true"><path class="tbar" d="M1 10H25"/></svg>its step is not active</span><span class="key">${icon("brk", 14)}breakpoint</span><span class="gap"></span><span><kbd>↑</kbd> <kbd>↓</kbd> <kbd>←</kbd> <kbd>→</kbd> steps <kbd>B</kbd> break <kbd>F</kbd> fire <kbd>−</kbd> <kbd>+</kbd> zoom</span></footer>`,
+  );
   body.innerHTML = `
-    <div class="main scroll"></div>
+    <div class="main scroll chart-scroll"></div>
     <aside class="side" aria-label="The selected step">
       <h3 class="who"></h3><dl class="facts"></dl>
       <div class="acts">
@@ -25,9 +33,64 @@ panels.chart = (place, layout, page, view) => {
   let state = {};
   let chosen = null; // null follows the active step
 
+  // -- a large chart: scrolled, zoomed, and alive where it is looked at ------------------------------------------------
+
+  const id = Math.random().toString(36).slice(2, 10);
+  let zoom = view.chartZoom ?? 1;
+  let seen = null; // the heights that Python was told of
+  let watched; // the step that was brought into view last
+  let due;
+  const followed = section.querySelector('[data-act="follow"]');
+  const follows = () => followed.getAttribute("aria-pressed") === "true";
+  for (const hand of ["wheel", "touchmove"]) main.addEventListener(hand, () => set(followed, "aria-pressed", "false"), { passive: true });
+  function scale() {
+    const { width, height } = drawing.svg.viewBox.baseVal;
+    set(drawing.svg, "width", width * zoom);
+    set(drawing.svg, "height", height * zoom);
+    for (const button of section.querySelectorAll("[data-zoom]")) button.disabled = !ZOOMS.includes(zoom) || ZOOMS[ZOOMS.indexOf(zoom) + Number(button.dataset.zoom)] === undefined;
+  }
+  function magnify(by) {
+    const next = ZOOMS[ZOOMS.indexOf(zoom) + by];
+    if (next === undefined || !drawing) return;
+    const [x, y] = [(main.scrollLeft + main.clientWidth / 2) / zoom, (main.scrollTop + main.clientHeight / 2) / zoom];
+    zoom = view.chartZoom = next;
+    scale();
+    main.scrollTo(x * zoom - main.clientWidth / 2, y * zoom - main.clientHeight / 2);
+    soon();
+  }
+  function look() {
+    due = undefined;
+    const [top, high] = [main.scrollTop / zoom, main.clientHeight / zoom];
+    if (!drawing || !high || page.dead) return;
+    const end = drawing.svg.viewBox.baseVal.height;
+    if (seen && Math.max(0, top - high / 2) >= seen[0] && Math.min(end, top + 1.5 * high) <= seen[1]) return;
+    // What begins above the edge of the view reaches into it.
+    seen = [Math.max(0, Math.floor(top - high - 300)), Math.min(end, Math.ceil(top + 2 * high))];
+    page.say("chart", "see", { view: id, top: seen[0], bottom: seen[1] });
+  }
+  const soon = () => (due ??= requestAnimationFrame(look));
+  main.addEventListener("scroll", soon, { passive: true });
+  const room = new ResizeObserver(soon);
+  room.observe(main);
+  function track() {
+    const step = (state.active ?? []).find((device) => boxes.has(device));
+    if (!follows() || !step || step === watched) return;
+    watched = step;
+    const [own, outer] = [boxes.get(step).getBoundingClientRect(), main.getBoundingClientRect()];
+    if (own.top < outer.top || own.bottom > outer.bottom) main.scrollTop += own.top - outer.top - (outer.height - own.height) / 2;
+    if (own.left < outer.left || own.right > outer.right) main.scrollLeft += own.left - outer.left - (outer.width - own.width) / 2;
+  }
+  section.querySelector(".zoom").addEventListener("click", (event) => event.target.dataset.zoom && magnify(Number(event.target.dataset.zoom)));
+
   function draw(svg) {
+    const [left, top] = [main.scrollLeft, main.scrollTop];
     drawing = new Drawing(main, svg).still();
+    set(drawing.svg, "role", "none"); // the tree is around it
     drawing.apply(state);
+    scale();
+    main.scrollTo(left, top);
+    seen = null;
+    watched = undefined;
     boxes.clear();
     for (const [device, step] of Object.entries(layout.steps)) {
       const node = drawing.find(device);
@@ -49,7 +112,7 @@ panels.chart = (place, layout, page, view) => {
   main.addEventListener("keydown", (event) => {
     const device = event.target.dataset?.device;
     if (!boxes.has(device) || event.ctrlKey || event.metaKey || event.altKey) return;
-    const act = { Enter: () => choose(device), b: () => page.say("chart", "break", { step: device }), f: () => page.say("chart", "fire", { step: device }) }[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+    const act = { "+": () => magnify(1), "-": () => magnify(-1), Enter: () => choose(device), b: () => page.say("chart", "break", { step: device }), f: () => page.say("chart", "fire", { step: device }) }[event.key.length === 1 ? event.key.toLowerCase() : event.key];
     if (!act) return;
     event.preventDefault();
     event.stopPropagation();
@@ -61,6 +124,11 @@ panels.chart = (place, layout, page, view) => {
     const step = shown();
     if (!button || !step) return;
     const acts = {
+      follow: () => {
+        set(followed, "aria-pressed", String(!follows()));
+        watched = undefined;
+        track();
+      },
       hold: () => page.say("chart", "hold", { on: !state.held }),
       break: () => page.say("chart", "break", { step }),
       network: () => view.parts.ladder?.reveal?.(step),
@@ -130,6 +198,8 @@ panels.chart = (place, layout, page, view) => {
         write(sub, `${changes.active.length} of ${Object.keys(layout.steps).length} active`);
         mark();
       }
+      if (changes.active || changes.svg) track();
+      if (changes.svg) look();
       explain();
       if (changes.log)
         log.innerHTML = changes.log
@@ -139,7 +209,14 @@ panels.chart = (place, layout, page, view) => {
     rest(dead) {
       sizes.rest(dead);
       explain();
+      seen = null;
+      soon();
     },
-    close: sizes.close,
+    close() {
+      page.say("chart", "unsee", { view: id });
+      cancelAnimationFrame(due);
+      room.disconnect();
+      sizes.close();
+    },
   };
 };

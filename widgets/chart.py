@@ -15,6 +15,7 @@ from .waiting import phrases, recorded, sentence
 
 LOG_LENGTH = 8
 NARROWEST, WIDEST = 300, 1400
+MOST_LOOKS = 4  # views at a time
 
 
 class Chart(Part):
@@ -35,6 +36,8 @@ class Chart(Part):
                 shown = self.outputs.setdefault(device, [])
                 targets = [action.word.operands[0] for action in step.actions if action.word.operands]
                 shown += [str(target) for target in targets if self._is_bit(target) and str(target) not in shown]
+        self._looks: dict[str, tuple[float, float]] = {}  # view -> from where to where it looks, in px
+        self._state: dict[str, str] = {}
         self._logged: Change | None = None
         self._log: list[list] = []
 
@@ -64,7 +67,9 @@ class Chart(Part):
         met = recorded(rig.plc.trace)
         entries = {"svg": svg, "active": active, "log": self._steps_taken(), "held": int(rig.session.transitions_held)}
         entries["breaks"] = {point.text: int(point.enabled) for point in rig.session.breakpoints if point.text in self.outputs}
-        entries.update(drawing.state(rig.session))
+        # What nobody looks at keeps its entries as they were.
+        self._state |= drawing.state(rig.session, tuple(self._looks.values()) if self._state and self._looks else None)
+        entries.update(self._state)
         for device in active:
             elapsed_us, scans = rig.since(device)
             entries[f"{device}.now"] = {
@@ -81,6 +86,18 @@ class Chart(Part):
         width = min(max(int(width), NARROWEST), WIDEST)
         if width != self._drawn[0]:
             self._drawn = self._draw(width)
+            self._state = {}
+
+    def on_see(self, view, top, bottom):
+        """A view looks at what begins between two heights of the drawing, in px."""
+        looks = {name: heights for name, heights in self._looks.items() if name != view}
+        while len(looks) >= MOST_LOOKS:  # a page that went away leaves its own behind
+            del looks[next(iter(looks))]
+        self._looks = looks | {view: (float(top), float(bottom))}
+
+    def on_unsee(self, view):
+        """A view is no more."""
+        self._looks.pop(view, None)
 
     def _step(self, device: str) -> str:
         if device not in self.outputs:

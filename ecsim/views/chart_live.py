@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ..assembler.program import Program
@@ -98,25 +99,29 @@ class ChartLive:
 
     def __init__(self, sheet: ChartSheet, program: Program | None):
         self.program = program
-        nodes = [what for what, _, _ in sheet.marks() if isinstance(what, Node)]
-        self.steps = [node.devices[0] for node in nodes if not node.joins]
-        self.joins = [node for node in nodes if node.joins]
-        drawn = {id(what) for what, _, _ in sheet.marks() if isinstance(what, Transition)}
+        marks = list(sheet.marks())
+        nodes = [(y, what) for what, _, y in marks if isinstance(what, Node)]
+        bars = {id(what): y for what, _, y in marks if isinstance(what, Transition)}
+        # Everything with its height on the sheet, so that of a large chart only what is looked at need be asked.
+        self.steps = [(y, node.devices[0]) for y, node in nodes if not node.joins]
+        self.joins = [(y, node) for y, node in nodes if node.joins]
         self.waiting = [
-            Waiting(transition, node, sheet.lengths.condition(transition), sheet.model)
-            for node in nodes
+            (bars[id(transition)], Waiting(transition, node, sheet.lengths.condition(transition), sheet.model))
+            for _, node in nodes
             for transition in (node.step.transitions if node.step else ())
-            if id(transition) in drawn
+            if id(transition) in bars
         ]
-        self.actions: list[tuple[Action, Node]] = [(action, node) for node in nodes if node.step for action in node.step.actions]
+        self.actions: list[tuple[float, Action, Node]] = [
+            (y, action, node) for y, node in nodes if node.step for action in node.step.actions
+        ]
         self.values = [
-            (f"v{action.word.position}:text", reader(action.word.operands[0], operand_type(action.word, 0), sheet.model))
-            for action, _ in self.actions
+            (y, f"v{action.word.position}:text", reader(action.word.operands[0], operand_type(action.word, 0), sheet.model))
+            for y, action, _ in self.actions
             if counts(action.word)
         ]
 
-    def state(self, moment) -> dict[str, str]:
-        """Every entry at this moment."""
+    def state(self, moment, shown: Sequence[tuple[float, float]] | None = None) -> dict[str, str]:
+        """Every entry at this moment, or those of what begins between the heights of `shown`."""
         plc = getattr(moment, "plc", moment)
         since: dict[str, int] = getattr(moment, "step_since", {})
         points = {point.text: point for point in getattr(moment, "breakpoints", ())}
@@ -124,22 +129,32 @@ class ChartLive:
         same = self.program is None or plc.program is self.program
         trace = plc.trace if plc.running and plc.tracing and same else None
         steps = memory.lists["S"]
+
+        def seen(y: float) -> bool:
+            return shown is None or any(top <= y <= bottom for top, bottom in shown)
+
         entries: dict[str, str] = {}
-        for device in self.steps:
+        for y, device in self.steps:
+            if not seen(y):
+                continue
             active = bool(steps[device.number])
             entries[f"{device}:class"] = "step active" if active else "step"
             began = since.get(str(device)) if active else None
             point = points.get(str(device))
             entries[f"k{device}:class"] = "breakpoint none" if point is None else "breakpoint" if point.enabled else "breakpoint off"
             entries[f"t{device}:text"] = "" if began is None else f"{max(0, plc.time_us - began) / 1e6:,.2f} s"
-        for node in self.joins:
-            self._join(entries, node, steps)
-        for action, node in self.actions:
-            entries[f"e{action.word.position}:class"] = "action on" if self._at_work(action, node, plc, trace) else "action"
-        for key, read in self.values:
-            entries[key] = figure(read(memory)) if read else ""
-        for transition in self.waiting:
-            transition.put(entries, memory, trace, plc.running)
+        for y, node in self.joins:
+            if seen(y):
+                self._join(entries, node, steps)
+        for y, action, node in self.actions:
+            if seen(y):
+                entries[f"e{action.word.position}:class"] = "action on" if self._at_work(action, node, plc, trace) else "action"
+        for y, key, read in self.values:
+            if seen(y):
+                entries[key] = figure(read(memory)) if read else ""
+        for y, transition in self.waiting:
+            if seen(y):
+                transition.put(entries, memory, trace, plc.running)
         return entries
 
     @staticmethod

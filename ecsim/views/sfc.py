@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 from ..assembler.program import Program, Unit
@@ -61,12 +61,12 @@ class Chart:
         self._drawn = width
         return self._sheet().picture(prefix)
 
-    def state(self, moment) -> dict[str, str]:
-        """What changes in the picture last drawn, by "key:attribute".
+    def state(self, moment, shown: Sequence[tuple[float, float]] | None = None) -> dict[str, str]:
+        """What changes in the picture last drawn, by "key:attribute"; `shown` leaves out what does not begin between its heights in px.
 
         `moment` is the Plc, or a Session, which also knows since when each step is active.
         """
-        return self._sheet().live.state(moment)
+        return self._sheet().live.state(moment, shown)
 
     def _sheet(self) -> ChartSheet:
         if self._drawn not in self._sheets:

@@ -123,3 +123,31 @@ def test_a_step_is_set_and_reset_by_hand(rig):
     assert chart.frame()["active"] == ["S0", "S20"]
     chart.receive("step", {"step": "S0", "on": False})
     assert chart.frame()["active"] == ["S20"]
+
+
+# -- a large chart -------------------------------------------------------------------------------------------------
+
+
+def test_what_nobody_looks_at_keeps_its_entries_as_they_were(make_rig):
+    """A chain of steps, one below the other: 100 and more px for each."""
+    chain = [0, *range(20, 119)]
+    ways = zip(chain, [*chain[1:], 0], strict=True)
+    lines = (f"STL S{here}\nOUT M{here}\nLD X{here % 2}\n{'SET' if there else 'OUT'} S{there}" for here, there in ways)
+    text = "\n".join(lines)
+    rig = make_rig(program=f"LD SM1\nSET S0\n{text}\nRET")
+    rig.session.scan(2)
+    chart = Chart(rig)
+    assert chart.frame()["S0:class"] == "step active"
+    chart.receive("see", {"view": "a", "top": 5000, "bottom": 7000})
+    rig.put("X0", 1)  # S0 and S20 are left one behind the other, S21 waits for X1
+    rig.session.scan(2)
+    frame = chart.frame()
+    assert frame["active"] == ["S21"]
+    assert (frame["S0:class"], frame["S21:class"]) == ("step active", "step")
+    chart.receive("see", {"view": "a", "top": 0, "bottom": 2000})
+    assert (chart.frame()["S0:class"], chart.frame()["S21:class"]) == ("step", "step active")
+    chart.receive("unsee", {"view": "a"})
+    rig.put("X0", 0)
+    rig.put("X1", 1)
+    rig.session.scan(2)
+    assert chart.frame()["S22:class"] == "step active"
