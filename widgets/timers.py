@@ -135,9 +135,13 @@ class Timers(Part):
     def layout(self):
         model = self.rig.plc.model
         rows = []
+        steps: dict[str, list[int]] = {}  # device -> where it is used
+        for instruction in self.rig.instructions:
+            for device in set(map(str, instruction.operands)):
+                steps.setdefault(device, []).append(instruction.step)
         for device, (unit, instruction) in self.rows.items():
             base_us = self._base_us(unit, instruction)
-            used = [i.step for i in self.rig.instructions if device in map(str, i.operands)]
+            used = steps[device]
             rows.append(
                 {
                     "device": device,
