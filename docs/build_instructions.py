@@ -12,14 +12,17 @@ from pathlib import Path
 from typing import Any
 
 from ecsim import help as help_on
-from ecsim.help import EXAMPLES, Page, Section, examples, section_title, sections
+from ecsim.help import EXAMPLES, OWN, Page, Section, examples, section_title, sections
+from ecsim.help_spelled import Group, SpelledPage, group_title, groups, names_of
 from ecsim.instructions import TABLE
 from ecsim.models import MODELS
+from ecsim.models.fx_spelling import plain
 from ecsim.scenario import load_cases, run_case
 
 ROOT = Path(__file__).resolve().parent.parent
 CASES = ROOT / "tests" / "conformance"
 PAGES = ROOT / "docs" / "instructions"
+H2U = MODELS["H2U"]
 NOTE = "<!-- Written by docs/build_instructions.py from the table of instructions; do not edit. -->"
 KEPT = ("id", "models", "il", "scan_ms", "system_block", "data_block", "steps", "note")
 
@@ -30,7 +33,12 @@ def chosen_examples() -> dict[str, dict[str, Any]]:
     for path in sorted(CASES.glob("*.json")):
         for case in load_cases(path):
             mnemonic = case["mnemonic"].partition(" ")[0]  # "SET Sxx": SET in a step
-            if mnemonic in TABLE and not case.get("compile_error"):
+            if case.get("compile_error"):
+                continue
+            spelled = MODELS[case["models"][0]].spelling
+            if spelled and mnemonic in case["il"].split():
+                candidates.setdefault(f"FX {plain(mnemonic)}", []).append(case)
+            elif not spelled and mnemonic in TABLE:
                 candidates.setdefault(mnemonic, []).append(case)
     found = {}
     for mnemonic in sorted(candidates):
@@ -43,7 +51,8 @@ def chosen_examples() -> dict[str, dict[str, Any]]:
 def _rank(case: dict[str, Any]) -> tuple:
     """Cases of the instruction's own section and worked examples first; then cases without an error, on more models, and short ones."""
     steps = case["steps"]
-    own = case["section"] == TABLE[case["mnemonic"].partition(" ")[0]].section
+    row = TABLE.get(case["mnemonic"].partition(" ")[0])
+    own = row is None or case["section"] == row.section
     size = len(case["il"].split("\n")) + sum(1 + len(step.get("set", ())) + len(step.get("expect", ())) for step in steps)
     fails = any(step.get("error") for step in steps)
     shows = any(value for step in steps for value in step.get("expect", {}).values()) and not any("expect_range" in step for step in steps)
@@ -63,7 +72,17 @@ def examples_text(found: dict[str, dict[str, Any]]) -> str:
 def pages() -> dict[str, str]:
     """File name -> text of every page."""
     found = {f"{section}.md": _section_page(section, names) for section, names in sections().items()}
-    return {"index.md": _index(), **found}
+    of_fx = {_file(group): _group_page(group, names) for group, names in groups(H2U).items()}
+    return {"index.md": _index(), **found, **of_fx}
+
+
+def _file(group: str) -> str:
+    return f"fx-{group.removeprefix('FNC ')}.md"
+
+
+def _group_page(group: str, names: Iterable[str]) -> str:
+    head = f"{NOTE}\n\n{Group(group, H2U)._repr_markdown_()}\n[All instructions](index.md)\n"
+    return "\n".join([head, *(_deeper(SpelledPage(name, H2U)._repr_markdown_()) for name in names)])
 
 
 def _section_page(section: str, names: Iterable[str]) -> str:
@@ -82,10 +101,14 @@ def _index() -> str:
         "",
         "# Instructions",
         "",
-        f'{len(TABLE)} mnemonics, in the order of the manual. In Python `ecsim.help("ADD")` shows the same,',
+        f'{len(OWN)} mnemonics of EC, in the order of the manual. In Python `ecsim.help("ADD")` shows the same,',
     ]
     lines += ["in a shell `ecsim help ADD`.", "", "| section | about | instructions |", "| --- | --- | --- |"]
     lines += [f"| [{section}]({section}.md) | {section_title(section)} | {' '.join(names)} |" for section, names in sections().items()]
+    lines += ["", "## H1U and H2U", ""]
+    lines += [f'{len(names_of(H2U))} instructions, with their 32-bit and pulse forms under one name: `ecsim.help("ROR", model="H2U")`,']
+    lines += ["`ecsim help ROR --model H2U`. Each page says how sure it is.", "", "| group | instructions |", "| --- | --- |"]
+    lines += [f"| [{group_title(group)}]({_file(group)}) | {' '.join(names)} |" for group, names in groups(H2U).items()]
     lines += ["", "## Devices", "", f"| area | kind | {' | '.join(MODELS)} |", "| --- | --- |" + " --- |" * len(MODELS)]
     kinds = {area.name: area.kind for model in MODELS.values() for area in model.areas.values()}
     for name, kind in kinds.items():
@@ -109,8 +132,9 @@ def main() -> None:
             path.unlink()
     for name, text in texts.items():
         (PAGES / name).write_text(text, encoding="utf-8")
-    print(f"{len(TABLE)} instructions on {len(texts)} pages, {len(examples())} examples")
-    print("without an example:", " ".join(name for name in TABLE if help_on(name).example is None) or "none")
+    print(f"{len(OWN) + len(names_of(H2U))} instructions on {len(texts)} pages, {len(examples())} examples")
+    shown = [help_on(name) for name in OWN] + [help_on(name, "H2U") for name in names_of(H2U)]
+    print("without an example:", " ".join(repr(page) for page in shown if page.example is None) or "none")
 
 
 if __name__ == "__main__":

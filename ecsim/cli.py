@@ -89,6 +89,7 @@ def _parser() -> argparse.ArgumentParser:
     served.set_defaults(act=_serve)
     tell = commands.add_parser("help", help="tell about an instruction", description="Tell about an instruction, a section, or list all.")
     tell.add_argument("name", nargs="?", default="", metavar="NAME", help="an instruction (ADD) or a section of the manual (6.3)")
+    tell.add_argument("--model", choices=list(MODELS), default="", help="whose instructions; EC's unless only H2U has such a one")
     tell.set_defaults(act=_help)
     add_commands(commands)
     return parser
@@ -184,5 +185,5 @@ def _serve(options: argparse.Namespace) -> int:
 
 
 def _help(options: argparse.Namespace) -> int:
-    print(help_on(options.name))
+    print(help_on(options.name, options.model))
     return 0

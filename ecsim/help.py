@@ -17,22 +17,22 @@ from .devices import Device
 from .errors import OPERAND, RANGE, EcsimError
 from .hardware.faults import MEANINGS
 from .instructions import TABLE, Definition
-from .instructions.define import BOTH
 from .instructions.signature import OperandSpec
-from .models import MODELS
+from .models import MODELS, get_model
 
+OWN = {name: row for name, row in TABLE.items() if not name.startswith("FX:")}  # the instructions of EC
 EXAMPLES = Path(__file__).with_name("help_examples.json")
 WIDTH = 100
 
-_JOINS = {"LD": "a contact that begins a block", "AND": "a contact in series", "OR": "a contact in parallel"}
-_FORMS = {
+JOINS = {"LD": "a contact that begins a block", "AND": "a contact in series", "OR": "a contact in parallel"}
+FORMS = {
     "value": "executed in every scan in which the flow is ON",
     "command": "executed in every scan in which the flow is ON",
     "always": "executed in every scan, with the flow ON or OFF",
     "emitted": "works on the flow of its rung",
 }
-_BUS = "stands on the left bus, without a contact before it"
-_USES = {(True, False): "read", (False, True): "written", (True, True): "read and written"}
+BUS = "stands on the left bus, without a contact before it"
+USES = {(True, False): "read", (False, True): "written", (True, True): "read and written"}
 _ERROR_NAMES = {name for name, code in vars(errors).items() if isinstance(code, int)}
 
 
@@ -75,7 +75,7 @@ def section_of(definition: Definition) -> str:
 def section_title(section: str) -> str:
     """What a section is about, from the first line of its module."""
     heads = {
-        (sys.modules[row.function.__module__].__doc__ or "").strip().split("\n")[0] for row in TABLE.values() if section_of(row) == section
+        (sys.modules[row.function.__module__].__doc__ or "").strip().split("\n")[0] for row in OWN.values() if section_of(row) == section
     }
     head = next((head for head in sorted(heads) if head.startswith(f"{section}:")), f"{section}: instructions")
     return head.removeprefix(f"{section}:").strip().split(". ")[0].split(": ")[0].rstrip(".")
@@ -88,7 +88,7 @@ def sections() -> dict[str, list[str]]:
         return [int(part) for part in text.split(".")]
 
     found: dict[str, list[str]] = {}
-    for row in sorted(TABLE.values(), key=lambda row: order(row.section)):
+    for row in sorted(OWN.values(), key=lambda row: order(row.section)):
         found.setdefault(section_of(row), []).append(row.mnemonic)
     return found
 
@@ -243,7 +243,7 @@ class Page(Shown):
 
     def _facts(self) -> tuple[str, ...]:
         row = self.definition
-        form = _JOINS[row.join] if row.join else _BUS if row.bus else _FORMS[row.form]
+        form = JOINS[row.join] if row.join else BUS if row.bus else FORMS[row.form]
         steps = "3 and one for each operand" if row.steps is None else str(row.steps)
         if row.transition_steps:
             steps += f"; {row.transition_steps} for a step device inside a step"
@@ -261,12 +261,19 @@ class Page(Shown):
             facts.append("needs inputs for itself (manual 8.5)")
         if row.cleared:
             facts.append("cleared when its master control is OFF and when its step has been left")
-        family = [other.mnemonic for other in TABLE.values() if other.function is row.function and other is not row]
+        family = [other.mnemonic for other in OWN.values() if other.function is row.function and other is not row]
         return (*facts, *([f"relatives with the same meaning: {', '.join(family)}"] if family else []))
 
     def _operands(self) -> tuple[tuple[str, ...], ...]:
         return tuple(
-            (spec.name, _USES[spec.read, spec.written], spec.type.name, "yes" if spec.indexed else "no", _devices(spec), _remark(spec))
+            (
+                spec.name,
+                USES[spec.read, spec.written],
+                spec.type.name,
+                "yes" if spec.indexed else "no",
+                device_words(spec.order),
+                remark(spec),
+            )
             for spec in self.definition.operands
         )
 
@@ -280,18 +287,22 @@ class Page(Shown):
         return f"{code}: {MEANINGS.get(code, 'an error')}" + (f" ({where})" if where else "")
 
     def _example(self) -> list[Part]:
-        case = self.example
-        if case is None:
-            return []
-        return [Heading("Example"), Words(_sentence(case["note"])), Code(case["il"].strip("\n")), Items(tuple(_story(case)))]
+        return example_parts(self.example) if self.example else []
 
 
-def _devices(spec: OperandSpec) -> str:
+def example_parts(case: dict[str, Any]) -> list[Part]:
+    """A conformance case as an example."""
+    return [Heading("Example"), Words(_sentence(case["note"])), Code(case["il"].strip("\n")), Items(tuple(_story(case)))]
+
+
+def device_words(areas: Iterable[str]) -> str:
+    """Areas as a page names them."""
     names = {"const": "constant", "routine": "name of a subroutine"}
-    return " ".join(names.get(area, area) for area in spec.order)
+    return " ".join(names.get(area, area) for area in areas)
 
 
-def _remark(spec: OperandSpec) -> str:
+def remark(spec: OperandSpec) -> str:
+    """What is particular about an operand: its range, its span."""
     remarks = []
     if spec.range:
         area = "" if "const" in spec.areas else spec.order[0]
@@ -318,7 +329,9 @@ _ACTIONS = {"run": "STOP to RUN", "stop": "RUN to STOP", "power_cycle": "power o
 
 def _story(case: dict[str, Any]) -> Iterable[str]:
     """The steps of a case, a line each: what is set, how long it runs, what comes out."""
-    if case["models"] != list(BOTH):
+    model = MODELS[case["models"][0]]
+    error = f"{model.special_words}{model.registers['faults']}"
+    if case["models"] != [other.name for other in MODELS.values() if other.family == model.family]:
         yield f"on {' and '.join(case['models'])}"
     if case.get("scan_ms", 10) != 10:
         yield f"a scan takes {case['scan_ms']} ms"
@@ -333,7 +346,7 @@ def _story(case: dict[str, Any]) -> Iterable[str]:
         time = f"after {step['ms']:g} ms" if "ms" in step else _scans(step.get("scans", 0))
         after = [_settings(step["expect"])] if step.get("expect") else []
         after += [f"{name} from {limits['min']} to {limits['max']}" for name, limits in step.get("expect_range", {}).items()]
-        after += [f"error {step['error']} in SD20" if step["error"] else "no error in SD20"] if "error" in step else []
+        after += [f"error {step['error']} in {error}" if step["error"] else f"no error in {error}"] if "error" in step else []
         yield f"{'; '.join([*before, time])}: {', '.join(after)}" if after else "; ".join([*before, time])
 
 
@@ -382,7 +395,7 @@ class Section(Shown):
 
     @cached_property
     def parts(self) -> tuple[Part, ...]:
-        rows = tuple((name, TABLE[name].title) for name in sections()[self.name])
+        rows = tuple((name, OWN[name].title) for name in sections()[self.name])
         return Heading(f"{self.name} {_upper(section_title(self.name))}", 1), Rows(("instruction", "what it does"), rows)
 
 
@@ -390,7 +403,7 @@ class Contents(Shown):
     """All instructions by section."""
 
     def __repr__(self) -> str:
-        return f"<help on {len(TABLE)} instructions in {len(sections())} sections>"
+        return f"<help on {len(OWN)} instructions in {len(sections())} sections>"
 
     @cached_property
     def parts(self) -> tuple[Part, ...]:
@@ -400,15 +413,24 @@ class Contents(Shown):
         return tuple(found)
 
 
-def help(name: str = "") -> Page | Section | Contents:  # noqa: A001 - the public name of the act
-    """The page of an instruction ("ADD"), the list of a section ("6.3"), or of all; raises EcsimError for what there is not."""
+def help(name: str = "", model: str = "") -> Shown:  # noqa: A001 - the public name of the act
+    """The page of an instruction ("ADD"), the list of a section ("6.3"), or of all; raises EcsimError for what there is not.
+
+    With a `model` it speaks of that one's instructions; without one of EC's, and of an instruction that only H2U has.
+    """
+    from .help_spelled import find
+
     wanted = name.strip().upper()
-    if not wanted:
-        return Contents()
-    if wanted in TABLE:
-        return Page(TABLE[wanted])
-    if wanted in sections():
-        return Section(wanted)
-    close = get_close_matches(wanted[:12], TABLE, 3, 0.6)
-    hint = f"did you mean {' or '.join(close)}?" if close else "ecsim.help() lists all"
+    chosen = get_model(model) if model else None
+    if chosen and chosen.spelling:
+        found = find(wanted, chosen)
+        known, every = {*chosen.spelling}, f'ecsim.help(model="{chosen.name}")'
+    else:
+        found = Contents() if not wanted else Page(OWN[wanted]) if wanted in OWN else Section(wanted) if wanted in sections() else None
+        found = found or (None if chosen else find(wanted, MODELS["H2U"]))
+        known, every = {*OWN}, "ecsim.help()"
+    if found:
+        return found
+    close = get_close_matches(wanted[:12], sorted(known), 3, 0.6)
+    hint = f"did you mean {' or '.join(close)}?" if close else f"{every} lists all"
     raise EcsimError(f"there is no instruction {name[:40]!r}; {hint}")

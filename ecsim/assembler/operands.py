@@ -106,7 +106,7 @@ class Resolver:
             self._constant(spec, operand, text)
         elif isinstance(operand, IndexedConstant):
             self._constant(spec, Constant(operand.value, operand.text), text)
-            if not spec.plain or spec.areas == {"const"}:
+            if not spec.indexed or not spec.plain:
                 raise Refused(f"{shown(text)}: {spec.name} cannot be indexed", "write the number itself", "3.2.2")
             self._index_register(operand)
         elif isinstance(operand, Bits):
@@ -137,12 +137,14 @@ class Resolver:
         one = area in self.model.index_pairs or self.model.areas[area].kind in ("bit", "timer", "counter")
         return 1 if one else max(1, spec.type.words)
 
-    def _areas(self, spec: OperandSpec) -> tuple[str, ...]:
-        """Where an operand may lie; a 32-bit number in index registers is named by the register of its low word."""
+    def areas(self, spec: OperandSpec) -> tuple[str, ...]:
+        """Where an operand may lie on the model; a 32-bit number in index registers is named by the register of its low word."""
         low = {high: low for low, high in self.model.index_pairs.items()}
-        if spec.type.words < 2 or not low:
-            return spec.order
-        return tuple(low.get(area, area) for area in spec.order if area not in low or not (spec.type is REAL or spec.span))
+        if spec.type.words >= 2 and low:
+            areas = [low.get(area, area) for area in spec.order if area not in low or not (spec.type is REAL or spec.span)]
+        else:
+            areas = list(spec.order)
+        return tuple(area for area in areas if not area.removeprefix("Kn").isupper() or area.removeprefix("Kn") in self.model.areas)
 
     def span(self, spec: OperandSpec, operand: Device | Bits, length: int | None, text: str) -> None:
         """Hold the elements from an operand on, if their number is known, against the last device."""
@@ -160,7 +162,7 @@ class Resolver:
             raise Refused(f"{shown(text)} reaches beyond {name}", f"it is the first of {length} {operand.area} devices", "3.2")
 
     def _area(self, spec: OperandSpec, area: str, text: str) -> None:
-        if area not in self._areas(spec):
+        if area not in self.areas(spec):
             what = "is read only" if spec.written and area in ("KnX", "X") else f"cannot be {spec.name}"
             raise Refused(f"{shown(text)} {what}", f"{spec.name} ({spec.type.name}) may be {self._allowed(spec)}")
 
@@ -169,8 +171,7 @@ class Resolver:
         pointer = self.model.syntax.pointers.get(spec.kind)
         if pointer:
             return f"a pointer, {pointer}{spec.range[0] if spec.range else 1}"
-        words = ["a constant" if area == "const" else area for area in self._areas(spec)]
-        words = [word for word in words if word == "a constant" or word.removeprefix("Kn") in self.model.areas]
+        words = ["a constant" if area == "const" else area for area in self.areas(spec)]
         return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} or {words[-1]}"
 
     def _constant(self, spec: OperandSpec, constant: Constant, text: str) -> None:

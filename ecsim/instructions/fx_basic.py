@@ -45,7 +45,7 @@ def _preset(device, preset):
     return None
 
 
-@always("FX:OUT T", "D:TIMER S:INT[const D] state", steps=3, section="3.5", models=FX, cleared=True, check=_preset)
+@always("FX:OUT T", "D:TIMER S:INT[const D]! state", steps=3, section="3.5", models=FX, cleared=True, check=_preset)
 def timer_coil(flow, timer, preset, state):
     """On-delay: counts while the flow is ON, contact ON at the preset, where it stops; flow OFF clears both.
 
@@ -65,7 +65,7 @@ def timer_coil(flow, timer, preset, state):
         timer.value = timer.due = 0
 
 
-@always("FX:OUT T246", "D:TIMER S:INT[const D] state", steps=3, section="3.5", models=FX, check=_preset)
+@always("FX:OUT T246", "D:TIMER S:INT[const D]! state", steps=3, section="3.5", models=FX, check=_preset)
 def retentive_timer_coil(flow, timer, preset, state):
     """Retentive on-delay: counts while the flow is ON, contact ON at the preset, where it stops; flow OFF keeps both, RST clears them.
 
@@ -85,7 +85,7 @@ def retentive_timer_coil(flow, timer, preset, state):
         timer.due = 0
 
 
-@always("FX:OUT C", "D:COUNTER S:INT[const D]", steps=3, section="3.6", models=FX, check=_preset)
+@always("FX:OUT C", "D:COUNTER S:INT[const D]!", steps=3, section="3.6", models=FX, check=_preset)
 def counter_coil(flow, counter, preset, state):
     """Count the flow's changes from OFF to ON up to the preset; contact ON there, and no further until RST."""
     if flow:
@@ -98,7 +98,7 @@ def counter_coil(flow, counter, preset, state):
         state.was = False
 
 
-@always("FX:OUT C200", "D:DCOUNTER S:DINT[const D]", steps=5, section="3.6", models=FX)
+@always("FX:OUT C200", "D:DCOUNTER S:DINT[const D]!", steps=5, section="3.6", models=FX)
 def double_counter_coil(flow, counter, preset, state):
     """Count up, or down while M8(C) is ON, round and round; contact ON on reaching the preset upward, OFF on leaving it downward."""
     if flow:
@@ -117,7 +117,7 @@ def double_counter_coil(flow, counter, preset, state):
 
 
 command(
-    "FX:OUT C235", "claim >D:HCOUNTER S:DINT[const D]", steps=5, section="3.6", models=FX, cleared=True, pulsed=False,
+    "FX:OUT C235", "claim >D:HCOUNTER S:DINT[const D]!", steps=5, section="3.6", models=FX, cleared=True, pulsed=False,
     faults=(OPERAND,), occupies=counter_inputs,
 )(hcnt)  # fmt: skip
 

@@ -261,6 +261,14 @@ REFERENCE = frozenset(
 )
 
 
+# Where what an instruction does is known from; most of what is in neither is general knowledge of the family.
+STATED = frozenset("LD LDP LDF ANB ORB MPS OUT RST MC P I STL RET CJ IRET EI FEND WDT MOV ZRST HSCS IST FROM RS".split())
+LOOKED_UP = frozenset("MC CJ BCD ADD SUB DIV ROR ROL RCR RCL ENCO ASCI HEX EADD ESUB EMUL EDIV".split())
+ALL_KNOWN = frozenset(  # nothing of these is general knowledge
+    "LD LDF ANB ORB P I STL RET CJ IRET EI FEND WDT MOV BCD ADD SUB ZRST ENCO HSCS IST FROM ASCI HEX EADD ESUB EMUL EDIV".split()
+)
+
+
 def plain(name: str) -> str:
     """The name of an instruction by which the manual lists it: of a 32-bit form that of the 16-bit one."""
     if name in _FUNCTIONS:

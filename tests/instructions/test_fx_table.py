@@ -45,8 +45,7 @@ def rows_of(spelled):
 
 def in_the_model(spec):
     """The areas of an operand that H2U has."""
-    areas = Resolver(H2U, {})._areas(spec)
-    return {area for area in areas if area == "const" or area.removeprefix("Kn") in H2U.areas}
+    return {area for area in Resolver(H2U, {}).areas(spec) if area not in ("routine", "text")}
 
 
 def printed(devices):
