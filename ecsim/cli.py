@@ -1,4 +1,4 @@
-"""The command `ecsim`: run, check and serve programs, run conformance cases, tell about instructions."""
+"""The command `ecsim`: run, check, serve and translate programs, run conformance cases, tell about instructions."""
 
 import argparse
 import json
@@ -17,9 +17,10 @@ from .help import help as help_on
 from .modbus import serve
 from .models import MODELS
 from .plc import Plc
-from .project import Project
+from .project import Project, replace_files
 from .scenario import load_cases, run_case
 from .session import Session
+from .translation import translate
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -87,6 +88,17 @@ def _parser() -> argparse.ArgumentParser:
     served.add_argument("--parity", default="even", help="none, odd or even")
     served.add_argument("--speed", type=float, default=1.0, metavar="FACTOR", help="simulated seconds a second")
     served.set_defaults(act=_serve)
+    into = commands.add_parser(
+        "translate",
+        help="turn a program of one family into one of the other",
+        description="Turn a program for EC10 or EC20 into one for H1U or H2U, or back, and report what differs.",
+        epilog="Ends with 0, with 1 and all reasons when the program does not compile or cannot be kept, with 2 for a wrong use.",
+    )
+    into.add_argument("program", type=Path, metavar="PROGRAM", help="an .il file or a project folder")
+    into.add_argument("--to", choices=list(MODELS), required=True, help="the model that it is to be for")
+    into.add_argument("--model", choices=list(MODELS), help="the model that it is for; EC20 unless the file or project says otherwise")
+    into.add_argument("--out", type=Path, metavar="FILE", help="write the program to this file, and the report to the screen")
+    into.set_defaults(act=_translate)
     tell = commands.add_parser("help", help="tell about an instruction", description="Tell about an instruction, a section, or list all.")
     tell.add_argument("name", nargs="?", default="", metavar="NAME", help="an instruction (ADD) or a section of the manual (6.3)")
     tell.add_argument("--model", choices=list(MODELS), default="", help="whose instructions; EC's unless only H2U has such a one")
@@ -181,6 +193,22 @@ def _serve(options: argparse.Namespace) -> int:
         except KeyboardInterrupt:
             print()
     session.stop()
+    return 0
+
+
+def _translate(options: argparse.Namespace) -> int:
+    try:
+        done = translate(compile_program(options.program, options.model), options.to)
+    except ProgramError as error:
+        return _told(error)
+    if options.out is None:
+        print(done.text)
+    else:
+        try:
+            replace_files(options.out.parent, {options.out.name: done.text}, [])
+        except OSError as error:
+            raise EcsimError(f"{options.out} cannot be written: {error.strerror}") from None
+    print(done.report(), file=sys.stderr if options.out is None else sys.stdout)
     return 0
 
 

@@ -34,7 +34,7 @@ from .assembler import Program, assemble
 from .errors import EcsimError, Problem, ProgramError
 from .hardware.modules import check_io
 from .hardware.serial import PortSettings
-from .models import MODELS, Model, get_model
+from .models import MODELS, Model, get_model, model_in
 from .protection import Passwords, check_unit_password
 from .system import SystemBlock, within
 from .upload import unsealed
@@ -71,12 +71,15 @@ class Project:
 
     @classmethod
     def of(cls, program: "str | Path | Project") -> "Project":
-        """A project from a text, the path of an .il file or of a folder. A one-line string that ends in .il, or names a folder, is a path."""
+        """A project from a text, the path of an .il file or of a folder. A one-line string that ends in .il, or names a folder, is a path.
+
+        The name of a file may tell its model: answer.h2u.il.
+        """
         if isinstance(program, Project):
             return program
         if isinstance(program, Path) or _is_path(program):
             path = Path(program)
-            return cls.read(path) if path.is_dir() else cls({path.name: _text(path)}, path.name)
+            return cls.read(path) if path.is_dir() else cls({path.name: _text(path)}, path.name, model_in(path.name))
         if not isinstance(program, str):
             raise EcsimError(f"a program is a text, a path, a Project or a Program, not {type(program).__name__}")
         return cls({"": program})
@@ -238,7 +241,7 @@ class Project:
         texts = dict(self.files) | ({SETTINGS: toml} if toml or self.toml else {})
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            _replace_files(folder, texts, others)
+            replace_files(folder, texts, others)
         except OSError as error:
             raise EcsimError(f"{folder} cannot be written: {error.strerror or error}") from None
         self.toml, self.origin = toml, frozenset((folder / name).resolve() for name in self.files)
@@ -310,7 +313,7 @@ def _text(path: Path) -> str:
         raise EcsimError(f"{path} cannot be read: {getattr(error, 'strerror', None) or error}") from None
 
 
-def _replace_files(folder: Path, texts: dict[str, str], gone: list[Path]) -> None:
+def replace_files(folder: Path, texts: dict[str, str], gone: list[Path]) -> None:
     """Write all texts beside their places first, then put each into its place and remove what is gone; when that fails, all is as it was."""
     former: dict[Path, bytes | None] = {}  # of the files that have changed already
     waiting: list[tuple[str, Path]] = []

@@ -17,7 +17,7 @@ FLOORS = (
     ("memory", "hardware", "comms"),
     ("instructions",),
     ("assembler", "project", "protection", "system", "upload"),
-    ("engines", "editing", "saved", "states"),
+    ("engines", "editing", "saved", "states", "translation"),
     ("plc", "programming", "formats", "monitor"),
     ("views", "record", "conditions", "history", "network", "outside", "modbus", "verify", "scenario", "help", "sensors"),
     ("breakpoints", "session"),

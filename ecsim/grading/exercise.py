@@ -35,7 +35,7 @@ class Exercise:
     scenarios: Sequence[Scenario]
     rules: Sequence[Rule]
     quantities: Sequence[str] = ()
-    models: Sequence[str] = ("EC20", "EC10")
+    models: Sequence[str] = ("EC20", "EC10", "H2U", "H1U")
     scan_ms: float = 10
     picture: Any = None
 
@@ -111,7 +111,7 @@ class Exercise:
 
     @property
     def solutions(self) -> dict[str, str]:
-        """All correct programs by name, the reference first."""
+        """All correct programs by name, the reference first; the name of one for another family tells its model: chart.h2u."""
         return {"solution": self.solution} | self._programs("solutions")
 
     @property

@@ -18,4 +18,10 @@ def get_model(name: "str | Model") -> Model:
     return model
 
 
-__all__ = ["MODELS", "Area", "By", "ModbusRange", "Model", "get_model"]
+def model_in(name: str) -> str | None:
+    """The model that a file's name tells before its ending: answer.h2u.il is a program for H2U; None for a name that tells none."""
+    _, *parts = name.removesuffix(".il").split(".")
+    return next((part.upper() for part in parts[-1:] if part.upper() in MODELS), None)
+
+
+__all__ = ["MODELS", "Area", "By", "ModbusRange", "Model", "get_model", "model_in"]
