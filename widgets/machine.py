@@ -1,7 +1,12 @@
-"""The machine's picture: drawn once, then moved by the state of its plant."""
+"""The machine's picture: drawn once, then moved by the state of its plant; and what is wrong with the machine and its sensors."""
+
+from ecsim.errors import EcsimError
+from ecsim.sensors import KINDS
 
 from .panel import Part
 from .rig import PREFIX
+
+USUAL = {"delayed": 0.5, "bounces": 30}  # what the plate offers first, in the unit of the kind
 
 
 class Machine(Part):
@@ -10,7 +15,36 @@ class Machine(Part):
     key = "machine"
 
     def layout(self):
-        return {"title": self.rig.title, "svg": self.rig.picture.svg(prefix=PREFIX)}
+        sensors = self.rig.sensors
+        return {
+            "title": self.rig.title,
+            "svg": self.rig.picture.svg(prefix=PREFIX),
+            "sensors": [dict(zip(("device", "name", "what"), (device, *self.rig.point(device)), strict=True)) for device in sensors.says],
+            "faults": [{"name": name, "what": what} for name, what in sensors.own.items()],
+            "times": [{"kind": kind, "unit": KINDS[kind].unit, "usual": usual} for kind, usual in USUAL.items()],
+        }
 
     def frame(self):
-        return dict(self.rig.picture.state(self.rig.machine_moment()))
+        sensors, moment = self.rig.sensors, self.rig.machine_moment()
+        entries = dict(self.rig.picture.state(moment))
+        for device, says in sensors.says.items():
+            fault = sensors.faults.get(device)
+            wrong = {"kind": fault.kind, "amount": fault.amount, "words": fault.words} if fault else None
+            entries[f"sensor.{device}"] = {"says": says, "comes": moment.inputs[device], "wrong": wrong}
+        entries["faults"] = sorted(getattr(sensors.plant, "faults", ()))
+        return entries
+
+    def on_fail(self, fault):
+        """Switch a fault in; gives why it was refused, or ""."""
+        return self._refusal(lambda: self.rig.session.fail(fault))
+
+    def on_mend(self, fault):
+        """Switch a fault out: a name, a sensor's device, or "all"; gives why it was refused, or ""."""
+        return self._refusal(lambda: self.rig.session.mend(fault))
+
+    def _refusal(self, action):
+        try:
+            action()
+        except EcsimError as error:
+            return str(error)
+        return ""

@@ -20,7 +20,7 @@ from .rig import Rig
 from .stream import Stream
 
 SCRIPTS = ("panel", "il", "plate", "transport", "unit", "machine", "chart", "ladder", "microscope", "trace", "timers", "devices", "editor")
-STYLES = ("panel", "plate", "transport", "unit", "chart", "ladder", "microscope", "trace", "timers", "devices", "editor", "lab")
+STYLES = ("panel", "plate", "transport", "unit", "machine", "chart", "ladder", "microscope", "trace", "timers", "devices", "editor", "lab")
 
 
 def _together(folder: resources.abc.Traversable, names: Iterable[str], ending: str) -> str:

@@ -6,6 +6,17 @@
 //
 // Python's side is a part of class Plated: the verbs look, leave, typed, write, force and unforce, the entry "plate.<id>".
 
+// Below the anchor, or above it where the panel has no room below; never wider than the view.
+function placeBelow(view, node, anchor) {
+  const [spot, root] = [anchor.getBoundingClientRect(), view.root.getBoundingClientRect()];
+  const zoom = root.width / view.root.offsetWidth || 1;
+  const left = (spot.left + spot.width / 2 - root.left) / zoom - node.offsetWidth / 2;
+  node.style.left = `${Math.max(4, Math.min(left, view.root.offsetWidth - node.offsetWidth - 4))}px`;
+  const below = (spot.bottom - root.top) / zoom + 6;
+  const above = (spot.top - root.top) / zoom - 6 - node.offsetHeight;
+  node.style.top = `${below + node.offsetHeight > view.root.offsetHeight && above >= 0 ? above : below}px`;
+}
+
 let plateCount = 0;
 
 function platesOf(part, page, view, { closed = () => {} } = {}) {
@@ -40,19 +51,8 @@ function platesOf(part, page, view, { closed = () => {} } = {}) {
     now = { device, label, anchor, back: document.activeElement, fresh: true };
     entry = null;
     node.addEventListener("keydown", keys);
-    place();
+    placeBelow(view, node, now.anchor);
     say("look", look ? { device, look } : { device });
-  }
-
-  // Below the anchor, or above it where the panel has no room below; never wider than the view.
-  function place() {
-    const [spot, root] = [now.anchor.getBoundingClientRect(), view.root.getBoundingClientRect()];
-    const zoom = root.width / view.root.offsetWidth || 1;
-    const left = (spot.left + spot.width / 2 - root.left) / zoom - node.offsetWidth / 2;
-    node.style.left = `${Math.max(4, Math.min(left, view.root.offsetWidth - node.offsetWidth - 4))}px`;
-    const below = (spot.bottom - root.top) / zoom + 6;
-    const above = (spot.top - root.top) / zoom - 6 - node.offsetHeight;
-    node.style.top = `${below + node.offsetHeight > view.root.offsetHeight && above >= 0 ? above : below}px`;
   }
 
   function build() {
@@ -121,7 +121,7 @@ function platesOf(part, page, view, { closed = () => {} } = {}) {
     }
     if (first) {
       now.fresh = false;
-      place();
+      placeBelow(view, node, now.anchor);
       const start = field() ?? node.querySelector("button");
       start.focus({ preventScroll: true });
       field()?.select();

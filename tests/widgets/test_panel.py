@@ -136,7 +136,7 @@ def test_a_panel_may_show_one_part_alone(make_rig, shuttle, picture):
     panel = Panel(rig, [Machine])
     assert panel.face["panels"]["machine"]["title"] == "Shuttle"
     assert 'id="EC0-part"' in panel.face["panels"]["machine"]["svg"]
-    assert panel.last["machine"] == {"part:transform": "translate(0 0)", "X0:class": ""}
+    assert panel.last["machine"].items() >= {"part:transform": "translate(0 0)", "X0:class": ""}.items()
 
 
 def test_the_picture_moves_with_its_plant(make_rig, shuttle, picture):
@@ -144,4 +144,4 @@ def test_the_picture_moves_with_its_plant(make_rig, shuttle, picture):
     machine = Machine(rig)
     rig.plc["X5"] = 1
     rig.session.scan(8)
-    assert machine.frame() == {"part:transform": "translate(8 0)", "X0:class": "on"}
+    assert machine.frame().items() >= {"part:transform": "translate(8 0)", "X0:class": "on"}.items()
