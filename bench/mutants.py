@@ -23,7 +23,8 @@ import sys
 import types
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cache
 from itertools import product
 from multiprocessing.connection import wait
 from pathlib import Path
@@ -33,11 +34,12 @@ sys.path.insert(0, str(ROOT))
 
 from ecsim.instructions import TABLE  # noqa: E402
 from ecsim.instructions.signature import parse_signature  # noqa: E402
+from ecsim.models import MODELS, By  # noqa: E402
 from ecsim.scenario import load_cases, run_case  # noqa: E402
 
 SOURCES = ROOT / "ecsim" / "instructions"
 PAGE = ROOT / "docs" / "mutation.md"
-NO_CHAPTER = {"__init__", "define", "signature"}
+NO_CHAPTER = {"__init__", "define", "signature", "spelling"}
 WORKERS = 2
 LIMIT_S = 20  # of the processor for all cases of a mutant; a run without end is noticed, too
 
@@ -47,7 +49,7 @@ EQUIVALENT = {
     r"bits\.enco: s & -s -> s \| -s": "s | -s is the negative number of the same lowest bit, and as long",
     r"checksums\.: range\(256\) -> range\(257\)": "an index of 8 bits never reaches the entry",
     r"clock\.(trd|twr): faults=.*": "what a span of registers raises is caught anyway; the column then serves the help page alone",
-    r"clock\.hour: \(None, 0, 0\) -> \(None, -?1, 0\)": "the scan is looked at only when there is a time to count from",
+    r"clock\.run_on: \(None, 0, 0\) -> \(None, -?1, 0\)": "the scan is looked at only when there is a time to count from",
     r"clock\._comparing: .*__doc__.*": "the words of the help page",
     r"contacts\.rst: resets=True -> nothing": "RST clears in its own way; the column serves the chart and spans of devices",
     r"(flow\.next_|sfc\.ret|master_control\.mcr): code\.close\(\) -> nothing": "no engine writes anything there, the program's structure tells where it ends",
@@ -262,12 +264,33 @@ def _names(node: ast.AST) -> set[str]:
     return {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
 
 
+@cache
+def rows_of(module: str) -> frozenset[str]:
+    """The rows of TABLE that a module defines; the function of some may be another module's."""
+    saved = dict(TABLE)
+    TABLE.clear()
+    exec(compile((SOURCES / f"{module}.py").read_text(encoding="utf-8"), module, "exec"), _blank(module).__dict__)
+    names = frozenset(TABLE)
+    TABLE.clear()
+    TABLE.update(saved)
+    return names
+
+
+def _blank(module: str) -> types.ModuleType:
+    """An empty module in the place of one of the instructions."""
+    empty = types.ModuleType(f"ecsim.instructions.{module}")
+    empty.__package__ = "ecsim.instructions"
+    return empty
+
+
 def reach(tree: ast.Module, module: str) -> Callable[[ast.stmt], tuple[str, ...]]:
     """A function that tells which mnemonics can feel a change in a statement of the module."""
-    own = {name: row for name, row in TABLE.items() if row.function.__module__.endswith(f".{module}")}
+    own = {name: TABLE[name] for name in rows_of(module)}
     functions = defaultdict(set)
-    for name, row in own.items():
-        functions[row.function.__code__.co_firstlineno].add(name)
+    for name, row in TABLE.items():
+        if row.function.__module__.endswith(f".{module}"):
+            functions[row.function.__code__.co_firstlineno].add(name)
+    elsewhere = {name for name, row in own.items() if not row.function.__module__.endswith(f".{module}")}
     mnemonics: dict[int, set[str]] = {}
     uses: dict[str, set[int]] = defaultdict(set)
     for place, statement in enumerate(tree.body):
@@ -275,6 +298,8 @@ def reach(tree: ast.Module, module: str) -> Callable[[ast.stmt], tuple[str, ...]
         mnemonics[place] = {name for line, names in functions.items() if first <= line <= statement.end_lineno for name in names}
         if isinstance(statement, ast.For) and not mnemonics[place]:
             mnemonics[place] = set(own)
+        if isinstance(statement, ast.Expr):
+            mnemonics[place] = elsewhere
         for name in _names(statement):
             uses[name].add(place)
 
@@ -339,15 +364,18 @@ def mutants(module: str) -> list[Mutant]:
 
 def install(mutant: Mutant) -> None:
     """Put the mutant's instructions in the place of the module's own."""
-    for mnemonic in [name for name, row in TABLE.items() if row.function.__module__.endswith(f".{mutant.module}")]:
+    lent = {name: row for name, row in TABLE.items() if row.function.__module__.endswith(f".{mutant.module}")}
+    for mnemonic in rows_of(mutant.module):
         del TABLE[mnemonic]
-    spoilt = types.ModuleType(f"ecsim.instructions.{mutant.module}")
-    spoilt.__package__ = "ecsim.instructions"
+        lent.pop(mnemonic, None)
+    spoilt = _blank(mutant.module)
     place = f"<mutant of {mutant.module}>"
     spoilt.__file__ = place
     linecache.cache[place] = (len(mutant.source), None, mutant.source.splitlines(keepends=True), place)
     sys.modules[spoilt.__name__] = spoilt
     exec(compile(mutant.source, place, "exec"), spoilt.__dict__)
+    for name, row in lent.items():  # rows of other modules with a function of this one
+        TABLE[name] = replace(row, function=getattr(spoilt, row.function.__name__, row.function))
 
 
 def noticed(mutant: Mutant, cases: list[dict]) -> str:
@@ -398,11 +426,18 @@ def judge(all_mutants: list[Mutant], cases: dict[str, list[dict]]) -> None:
 
 
 def conformance() -> dict[str, list[dict]]:
-    """The cases of each mnemonic."""
+    """The cases of each row of TABLE."""
     found = defaultdict(list)
+    spelling = MODELS["H2U"].spelling
     for path in sorted((ROOT / "tests" / "conformance").glob("*.json")):
         for case in load_cases(path):
-            found[case["mnemonic"].partition(" ")[0]].append(case)
+            name = case["mnemonic"].partition(" ")[0]
+            if case["models"][0] in ("EC10", "EC20"):
+                found[name].append(case)
+                continue
+            meant = spelling.get(name) or spelling.get(f"D{name}") or name
+            for key in meant.keys if isinstance(meant, By) else (meant,):
+                found[key].append(case)
     return found
 
 

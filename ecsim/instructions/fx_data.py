@@ -21,7 +21,7 @@ def zrst(_, first, last):
     return [False] * (max(last - first, 0) + 1)
 
 
-@value("FX:ZRST D", f">D1:INT[D]{_RUN} D2:INT[D] d1 d2", steps=5, section="FNC 40", models=FX, as_stored=True, check=_one_kind)
+@value("FX:ZRST D", f">D1:INT[D]{_RUN} D2:INT[D] d1 d2", steps=5, section="FNC 40", models=FX, as_stored=True)
 def zrst_d(_, first, last):
     """The registers from D1 to D2 become 0; a D2 below D1 leaves D1 alone to be cleared."""
     return [0] * (max(last - first, 0) + 1)
