@@ -40,6 +40,7 @@ panels.chart = (place, layout, page, view) => {
   let seen = null; // the heights that Python was told of
   let watched; // the step that was brought into view last
   let due;
+  let pieces = []; // what the drawing is made of, with the heights between which each piece lies
   const followed = section.querySelector('[data-act="follow"]');
   const follows = () => followed.getAttribute("aria-pressed") === "true";
   for (const hand of ["wheel", "touchmove"]) main.addEventListener(hand, () => set(followed, "aria-pressed", "false"), { passive: true });
@@ -61,12 +62,22 @@ panels.chart = (place, layout, page, view) => {
   function look() {
     due = undefined;
     const [top, high] = [main.scrollTop / zoom, main.clientHeight / zoom];
-    if (!drawing || !high || page.dead) return;
+    if (!drawing || !high) return;
     const end = drawing.svg.viewBox.baseVal.height;
     if (seen && Math.max(0, top - high / 2) >= seen[0] && Math.min(end, top + 1.5 * high) <= seen[1]) return;
     // What begins above the edge of the view reaches into it.
     seen = [Math.max(0, Math.floor(top - high - 300)), Math.min(end, Math.ceil(top + 2 * high))];
+    bare();
     page.say("chart", "see", { view: id, top: seen[0], bottom: seen[1] });
+  }
+  // Of a large drawing the browser lays out and paints only what is near the view.
+  function bare() {
+    for (const piece of pieces) {
+      const hidden = piece.bottom < seen[0] || piece.top > seen[1];
+      if (hidden === piece.hidden || (hidden && piece.node.contains(document.activeElement))) continue;
+      piece.hidden = hidden;
+      piece.node.style.display = hidden ? "none" : "";
+    }
   }
   const soon = () => (due ??= requestAnimationFrame(look));
   main.addEventListener("scroll", soon, { passive: true });
@@ -76,9 +87,11 @@ panels.chart = (place, layout, page, view) => {
     const step = (state.active ?? []).find((device) => boxes.has(device));
     if (!follows() || !step || step === watched) return;
     watched = step;
-    const [own, outer] = [boxes.get(step).getBoundingClientRect(), main.getBoundingClientRect()];
-    if (own.top < outer.top || own.bottom > outer.bottom) main.scrollTop += own.top - outer.top - (outer.height - own.height) / 2;
-    if (own.left < outer.left || own.right > outer.right) main.scrollLeft += own.left - outer.left - (outer.width - own.width) / 2;
+    const [x, y] = [Number(boxes.get(step).dataset.col) * zoom, Number(boxes.get(step).dataset.row) * zoom]; // it may not be laid out
+    const [wide, high] = [60 * zoom, 44 * zoom];
+    if (y < main.scrollTop || y + high > main.scrollTop + main.clientHeight) main.scrollTop = y - (main.clientHeight - high) / 2;
+    const left = main.scrollWidth > main.clientWidth ? 0 : (main.clientWidth - drawing.svg.viewBox.baseVal.width * zoom) / 2;
+    if (x + left < main.scrollLeft || x + left + wide > main.scrollLeft + main.clientWidth) main.scrollLeft = x - (main.clientWidth - wide) / 2;
   }
   section.querySelector(".zoom").addEventListener("click", (event) => event.target.dataset.zoom && magnify(Number(event.target.dataset.zoom)));
 
@@ -89,6 +102,10 @@ panels.chart = (place, layout, page, view) => {
     drawing.apply(state);
     scale();
     main.scrollTo(left, top);
+    pieces = [...drawing.svg.children].flatMap((node) => {
+      const box = node.getBBox?.();
+      return box?.height || box?.width ? [{ node, top: box.y, bottom: box.y + box.height, hidden: false }] : [];
+    });
     seen = null;
     watched = undefined;
     boxes.clear();

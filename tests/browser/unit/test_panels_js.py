@@ -115,3 +115,71 @@ def test_a_panel_without_its_kernel_keeps_what_it_showed(shown, still):
     expect(bench["chip"]).to_have_text("Not connected: the last state")
     expect(bench["lamp-Y0"]).to_have_attribute("data-on", "")
     expect(bench["ladder"].locator(".stamp")).to_have_text("last state · scan 3")
+
+
+# -- a large chart: only what is looked at is laid out, and the active step is always found ------------------------
+
+CHAIN = [0, *range(20, 119)]
+WAYS = zip(CHAIN, [*CHAIN[1:], 0], strict=True)
+LONG = "\n".join(f"STL S{here}\nOUT M{here}\nLD X{here % 2}\n{'SET' if there else 'OUT'} S{there}" for here, there in WAYS)
+FOUND = """(step) => {
+  const [own, outer] = [step, '.chart-scroll'].map((each) => document.querySelector(each).getBoundingClientRect());
+  return own.height > 0 && own.top >= outer.top && own.bottom <= outer.bottom;
+}"""
+
+
+@pytest.fixture
+def long_chart(bench, make_lab):
+    bench.lab = make_lab(f"LD SM1\nSET S0\n{LONG}\nRET")
+    bench.lab.session.scan(2)
+    bench.connect(bench.lab.panel("chart"))
+    return bench
+
+
+def set_step(bench, number):
+    for step in bench.lab.rig.active():
+        bench.lab.session.set_step(step, False)
+    bench.lab.session.set_step(f"S{number}", True)
+    bench.settle()
+    bench.settle()
+
+
+def test_a_large_chart_scrolls_in_its_panel_and_lays_out_what_is_looked_at(long_chart):
+    laid_out = "() => [...document.querySelectorAll('.step')].filter((step) => step.getClientRects().length).length"
+    assert long_chart.js("() => document.querySelector('.chart-scroll').scrollHeight") > 9000
+    assert long_chart.js("() => document.querySelector('.chart-scroll').clientHeight") <= 960
+    assert 10 < long_chart.js(laid_out) < 50
+    long_chart.js("() => { document.querySelector('.chart-scroll').scrollTop = 1e6; }")
+    long_chart.frame()
+    long_chart.settle()
+    assert long_chart.js(FOUND, '[data-testid="step-S118"]')
+    assert long_chart.js(laid_out) < 50
+
+
+def test_the_active_step_is_followed_until_somebody_scrolls(long_chart):
+    set_step(long_chart, 90)
+    assert long_chart.js(FOUND, '[data-testid="step-S90"]')
+    expect(long_chart["step-S90"]).to_have_class("step active")
+    long_chart["chart"].locator(".chart-scroll").hover()
+    long_chart.page.mouse.wheel(0, -200)
+    expect(long_chart["chart-follow"]).to_have_attribute("aria-pressed", "false")
+    set_step(long_chart, 30)
+    assert not long_chart.js(FOUND, '[data-testid="step-S30"]')
+    long_chart["chart-follow"].click()
+    long_chart.settle()
+    assert long_chart.js(FOUND, '[data-testid="step-S30"]')
+
+
+def test_the_chart_is_zoomed_around_its_middle(long_chart):
+    set_step(long_chart, 70)
+    wide = "() => document.querySelector('[data-testid=step-S70] .box').getBoundingClientRect().width"
+    before = long_chart.js(wide)
+    for _ in range(3):
+        long_chart["zoom-out"].click()
+        long_chart.settle()
+    assert long_chart.js(wide) == pytest.approx(before / 2, rel=0.05)
+    assert long_chart.js(FOUND, '[data-testid="step-S70"]')
+    expect(long_chart["zoom-out"]).to_be_disabled()
+    long_chart["step-S70"].focus()
+    long_chart.page.keyboard.press("+")
+    assert long_chart.js(wide) == pytest.approx(before * 0.67, rel=0.05)
