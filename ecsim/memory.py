@@ -193,7 +193,7 @@ class Memory:
         """An indexed operand as the device that it stands for now, of `length` elements; beyond its area it is Fault(65)."""
         moved = replace(operand, number=operand.number + index, index=None)
         span = 4 * operand.digits if isinstance(operand, Bits) else length
-        if not 0 <= moved.number <= len(self.lists[operand.area]) - span:
+        if not 0 <= moved.number <= self.model.areas[operand.area].end(operand.number) - span:
             raise Fault(RANGE)
         return moved
 

@@ -89,6 +89,8 @@ class Plc(Programming, States):
         watchers += (self.counters, self.meters, self.interrupts, self.outputs)
         self.limits = FrequencyLimits(self.inputs, self.counters, self.meters, self.interrupts, self._awake)
         self.inputs.check = self.limits.check
+        if self.model.captures_when_enabled:
+            self.inputs.may_catch = lambda: self.interrupts.enabled
         self.rtc = RealTimeClock(self.memory, self._awake)
         self.eeprom = Eeprom(self.memory, self._awake)
         self.pots = Potentiometers(self.model.limits.get("potentiometers", 0), self._awake)
@@ -125,6 +127,8 @@ class Plc(Programming, States):
         self._first = True
         self._names: dict[str, Device] = {}
         self._special = self.memory.lists[self.model.special_bits], self.memory.lists[self.model.special_words]
+        constant = self.model.relays.get("constant scan")
+        self._governed = constant is not None and constant not in self.model.read_only_relays  # programs govern the machine
         self._services = {
             **functions(self.memory),
             "CLOCK": self.clock,
@@ -158,7 +162,7 @@ class Plc(Programming, States):
         """Take over the period of a scan and the system block."""
         self.scan_ms, self.system = scan_ms, system
         self.supply.loss_ms, self.supply.no_battery = system.power_loss_ms, system.no_battery
-        self._fixed_us = 0 if scan_ms is None else max(round(scan_ms * 1000), system.constant_scan_ms * 1000)
+        self._set_constant_scan(system.constant_scan_ms)
         self._watchdog_ns = system.watchdog_ms * 1_000_000
         self.inputs.usual_us = round(1000 * (self.model.filter_ms if system.input_filter_ms is None else system.input_filter_ms))
         self.inputs.set_filter(self.inputs.usual_us)
@@ -251,7 +255,21 @@ class Plc(Programming, States):
 
     def _modelled_us(self) -> int:
         """The time that the instructions add up to; a constant scan (SM8) waits for its end."""
-        return max(self.system.constant_scan_ms * 1000, 1000, -(-self._took_ns // 1000))
+        return max(self._constant_us, 1000, -(-self._took_ns // 1000))
+
+    def _set_constant_scan(self, ms: int) -> None:
+        self._constant_us = 1000 * ms
+        self._fixed_us = 0 if self.scan_ms is None else max(round(self.scan_ms * 1000), self._constant_us)
+
+    def _obey(self) -> None:
+        """Do what the program tells the machine by special relays and registers: the constant scan, the watchdog."""
+        registers, numbers = self._special[1], self.model.registers
+        ms = max(registers[numbers["constant scan"]], 0) if self._says("constant scan") else 0
+        if 1000 * ms != self._constant_us:
+            self._set_constant_scan(ms)
+        self._watchdog_ns = 1_000_000 * max(registers[numbers["watchdog"]], 0)
+        for port in self.ports:
+            port.obey()
 
     def _one_scan(self) -> None:
         """One turn of the scan circle (2.1.2), cut before the input refresh."""
@@ -278,6 +296,8 @@ class Plc(Programming, States):
             if self.timers.watched:
                 self.timers.advance()
             self._execute()
+            if self._governed:
+                self._obey()
             period = self._fixed_us or self._modelled_us()
             if self._first or period != self._noted_us:
                 self._housekeeping(period)
@@ -334,7 +354,8 @@ class Plc(Programming, States):
             self._tell("power up", False)
             self.inputs.catching = False
         self._noted_us = period_us
-        period = (period_us + 500) // 1000
+        unit = self.model.scan_time_us
+        period = (period_us + unit // 2) // unit
         registers[numbers["scan time"]] = period
         least = registers[numbers["least scan time"]]
         registers[numbers["least scan time"]] = min(least, period) if least else period
@@ -415,6 +436,8 @@ class Plc(Programming, States):
 
     def watchdog_reset(self) -> None:
         """WDT: the watchdog's time counts from zero again; the scan has taken what it has taken."""
+        if self._governed:
+            self._obey()
         if self._watchdog_ns:
             self._limit_ns = min(self._spent[0] + self._watchdog_ns, LONGEST_NS)
 

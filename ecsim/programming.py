@@ -284,15 +284,18 @@ class Programming:
         def shown(meaning: str) -> int:
             return registers[numbers[meaning]]
 
+        def ms(meaning: str) -> float:
+            return shown(meaning) * self.model.scan_time_us / 1000
+
         return {
             "model": self.model.name,
-            "firmware": shown("version") / 100,
+            **({"firmware": shown("version") / 100} if "version" in numbers else {}),
             "state": "RUN" if self.running else "STOP",
             "steps": self.program.steps,
             "capacity": self.model.limits["steps"],
-            "scan_ms": shown("scan time"),
-            "least_scan_ms": shown("least scan time"),
-            "greatest_scan_ms": shown("greatest scan time"),
+            "scan_ms": ms("scan time"),
+            "least_scan_ms": ms("least scan time"),
+            "greatest_scan_ms": ms("greatest scan time"),
             "constant_scan_ms": shown("constant scan"),
             "watchdog_ms": shown("watchdog"),
             "errors": [str(error) for error in self.errors],

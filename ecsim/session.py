@@ -163,7 +163,7 @@ class Session:
         if self.plant is None:
             return
         plc = self.plc
-        outputs = dict(zip(self._output_names, map(int, self._driven(plc.memory.lists["Y"])), strict=False)) | dict.fromkeys(
+        outputs = dict(zip(self._output_names, map(int, self._driven(plc.driven)), strict=False)) | dict.fromkeys(
             self._counted, 0
         )
         outputs |= {name: self._signals[name].get() for name in self._analog_outputs}
@@ -265,7 +265,7 @@ class Session:
         plc.turn()
         if self._plant_on:
             now = plc.clock[0]
-            driven = self._driven(plc.memory.lists["Y"])
+            driven = self._driven(plc.driven)
             if driven != self._last_driven:
                 self._last_driven = driven
                 self._outputs = dict(zip(self._output_names, map(int, driven), strict=False))

@@ -7,14 +7,14 @@ from functools import wraps
 
 from .assembler.inputs import occupied
 from .errors import EcsimError
-from .hardware.faults import ERRORS, LAMPS, Faults, SystemErrors
-from .hardware.interrupts import POWER_LOSS
+from .hardware.faults import ERRORS, KNOWN, LAMPS, Faults, SystemErrors
 from .hardware.serial import Port
 from .hardware.supply import Supply
 from .system import within
 
 SWITCH = ("ON", "TM", "OFF")
 HOUR_US = 3_600_000_000
+OPPOSITES = {"running": "not running", "first scan": "not first scan"}  # relays that are OFF while the others are ON
 EEPROM, RETAINED, FORCES, INFORMATION, TRANSLATION = 24, 43, 44, 45, 60
 
 
@@ -97,8 +97,11 @@ class States:
         if self.health.stopping:
             return
         self._halted = 0
-        self._initialise(hold=self.system.hold_values)
-        self._init_special(power_up="power up" in self.model.relays and bool(self._special[0][self.model.relays["power up"]]))
+        if self.model.clears_at_stop:
+            self._begin_run()
+        else:
+            self._initialise(hold=self.system.hold_values)
+            self._init_special(power_up="power up" in self.model.relays and bool(self._special[0][self.model.relays["power up"]]))
         if self.health.met == TRANSLATION:
             self._stop_with(TRANSLATION)
             return
@@ -124,9 +127,13 @@ class States:
         if not self.running:
             return
         self.running = False
+        self._set_constant_scan(self.system.constant_scan_ms)
         self._run_level = self._at_run_input(self.memory.lists["X"])
         self._tell("running", False)
         self._restart_units()
+        if self.model.clears_at_stop:
+            self._end_run()
+            return
         if self.system.stop_outputs == "freeze":
             return
         self.memory.clear("Y")
@@ -134,6 +141,24 @@ class States:
             for name, state in self.system.stop_output_table.items():
                 device, kind = self.memory.parse(name)
                 self.memory.set(device, kind, state)
+
+    def _begin_run(self) -> None:
+        """RUN of a PLC that has cleared its devices before: outputs begin OFF, the errors of the last run are forgotten."""
+        self.memory.clear("Y")
+        self._load(self.system.retention(self.model))
+        self.faults.forget()
+        self.health.show()
+        self._obey()
+
+    def _end_run(self) -> None:
+        """What is not retained is cleared, and every special relay that programs write; "hold memory" leaves all, outputs too."""
+        if self._says("hold memory"):
+            return
+        self._clear(self.system.retention(self.model))
+        relays = self.memory.lists[self.model.special_bits]
+        kept = self.model.read_only_relays | self.model.latched_relays
+        for number in self.model.special(self.model.special_bits):
+            relays[number] = relays[number] and number in kept
 
     def _stop_with(self, code: int) -> None:
         """A serious execution error: STOP and the ERR lamp; SM20 and SD20 tell of it, SM3 and SD3 belong to system errors (2.4.2)."""
@@ -184,7 +209,7 @@ class States:
         self.supply.mains = False
         self.supply.show()
         if self.running:
-            self.interrupts.fire(POWER_LOSS)
+            self.interrupts.fire(self.model.power_loss_event)
             self._serve_queue()
         self.stop()
         for port in self.ports:
@@ -249,7 +274,7 @@ class States:
         """Power-up or reset; `lost` tells that the memory had no supply."""
         self.power_ups += 1
         if lost and not self.supply.no_battery:
-            for code in (RETAINED, FORCES, INFORMATION):
+            for code in {RETAINED, FORCES, INFORMATION} & self.health.rows.keys():
                 self.health.damage(code)
         kept = not (lost or RETAINED in self.health.damaged)
         if lost or FORCES in self.health.damaged:
@@ -289,6 +314,12 @@ class States:
     def dc24(self, on: bool) -> None:
         self.supply.change_dc(bool(on), self.clock[0])
 
+    @property
+    def driven(self) -> list:
+        """What the output terminals carry: the image Y, or all OFF while a special relay switches the outputs off."""
+        image = self.memory.lists["Y"]
+        return [False] * len(image) if self._says("outputs off") else image
+
     # -- errors -------------------------------------------------------------------------------------------------
 
     def _part(self, part: str) -> int:
@@ -322,19 +353,19 @@ class States:
     @property
     def system_error(self) -> int:
         """The gravest error that keeps SM3 ON or has stopped the PLC, 0 without one."""
-        return next(iter(self.health.codes), self._halted)
+        return self.model.fault_code(next(iter(self.health.codes), self._halted))
 
     @property
     def stopped_by(self) -> int:
         """The error that keeps the PLC in STOP, 0 without one."""
-        return self.system_error if self.health.stopping else self._halted
+        return self.system_error if self.health.stopping else self.model.fault_code(self._halted)
 
     @property
     def errors(self) -> list[MachineError]:
         """What SD3 and SD20 to SD24 say, in words, system errors first."""
-        codes = [*self.health.codes, *([self._halted] if self._halted else [])]
-        codes += [code for code in self.faults.codes() if code not in codes]
-        return [MachineError(code, ERRORS[code].meaning, ERRORS[code].effect, ERRORS[code].remedy) for code in codes]
+        found = [*self.health.codes, *([self._halted] if self._halted else [])]
+        rows = {code: KNOWN[code] for code in (*map(self.model.fault_code, found), *self.faults.codes())}
+        return [MachineError(code, row.meaning, row.effect, row.remedy) for code, row in rows.items()]
 
     @property
     def lamps(self) -> dict[str, str]:
@@ -345,22 +376,26 @@ class States:
         return {
             "RUN": "on" if self.running else "off",
             "ERR": max(states, key=LAMPS.index, default="off"),
-            "BAT": "on" if self.supply.low else "off",
+            "BAT": "on" if self.supply.low and not self._says("battery lamp off") else "off",
         }
 
     # -- what devices begin with --------------------------------------------------------------------------------
 
     def _initialise(self, hold: bool, kept: bool = True) -> None:
         """The order of 2.1.6: retained (when they were kept), EEPROM, data block, held values, cleared."""
-        retained = {
-            area: {n for first, last in ranges for n in range(first, last + 1)}
-            for area, ranges in self.system.retain.items()
-            if kept and area in self.model.retained
-        }
+        retained = self.system.retention(self.model) if kept else {}
         if not hold:
-            for area in self.model.areas:
-                if area != "X":
-                    self.memory.clear(area, retained.get(area, frozenset()).union(self.model.special(area)))
+            self._clear(retained)
+        self._load(retained)
+
+    def _clear(self, retained: dict[str, frozenset[int]]) -> None:
+        """Clear what is neither an input, nor retained, nor special."""
+        for area in self.model.areas:
+            if area != "X":
+                self.memory.clear(area, retained.get(area, frozenset()).union(self.model.special(area)))
+
+    def _load(self, retained: dict[str, frozenset[int]]) -> None:
+        """All timers stand; the data block and the EEPROM give their values to what is not retained."""
         for part in ("DUE", "REST"):
             values = self.memory.lists[part]
             values[:] = [0] * len(values)
@@ -397,6 +432,8 @@ class States:
             registers[number] = value
         for port in self.ports:
             port.show()
+        self._tell("running", self.running)
+        self._tell("first scan", False)
         self._tell("power up", power_up)
         self._tell("constant scan", self.system.constant_scan_ms > 0)
         self._tell("run input", self.system.run_input is not None)
@@ -406,5 +443,11 @@ class States:
 
     def _tell(self, meaning: str, on: bool) -> None:
         """Turn a special relay ON or OFF by its meaning, if the model has one for it."""
-        if meaning in self.model.relays:
-            self.memory.lists[self.model.special_bits][self.model.relays[meaning]] = on
+        for each, state in ((meaning, on), (OPPOSITES.get(meaning), not on)):
+            if each in self.model.relays:
+                self.memory.lists[self.model.special_bits][self.model.relays[each]] = state
+
+    def _says(self, meaning: str) -> bool:
+        """Whether a special relay by which programs tell the machine something is ON; not where the model has none."""
+        number = self.model.relays.get(meaning)
+        return number is not None and bool(self.memory.lists[self.model.special_bits][number])

@@ -43,8 +43,19 @@ class SystemBlock:
     port0: PortSettings | None = None
     port1: PortSettings | None = None
 
+    def retention(self, model: Model) -> dict[str, frozenset[int]]:
+        """The devices that keep their values, by area: what `retain` names, or else what is usual, and what the model always retains."""
+        found = {}
+        for area in model.retained:
+            runs = (*self.retain.get(area, model.usual_retention.get(area, ())), *model.fixed_retention.get(area, ()))
+            found[area] = frozenset(number for first, last in runs for number in range(first, last + 1))
+        return found
+
     def check(self, model: Model) -> None:
         """Raise EcsimError for a setting that the model does not have."""
+        for setting, remedy in model.unset.items():
+            if getattr(self, setting) != getattr(_USUAL, setting):
+                raise EcsimError(f"{setting} is {getattr(self, setting)!r:.40}, but {model.name} has no such setting; {remedy}")
         for table in ("retain", "data_block", "stop_output_table", "interrupt_priority", "modules"):
             if not isinstance(getattr(self, table), dict):
                 raise EcsimError(f"{table} is {getattr(self, table)!r:.40}; write a dict, as retain={{'D': [(100, 199)]}} is one")
@@ -87,7 +98,7 @@ class SystemBlock:
                 raise EcsimError(f"retain of {area} is {ranges!r:.40}; write a list of ranges, for example [(100, 199)]")
             if len(ranges) > model.retention_limits.get("ranges", len(ranges)):
                 raise EcsimError(f"retain has {len(ranges)} ranges of {area}; {model.name} takes {model.retention_limits['ranges']}")
-            count = model.areas[area].count
+            count = model.ordinary(area)
             for first, last in ranges:
                 if not (isinstance(first, int) and isinstance(last, int) and 0 <= first <= last < count):
                     raise EcsimError(
@@ -140,6 +151,9 @@ class SystemBlock:
             if not isinstance(settings, dict) or not isinstance(settings.get("kind", ""), str):
                 raise EcsimError(f"modules: place {place} is set to {settings!r:.40}; write its settings by name, its kind as text")
             check_settings(model, place, settings)
+
+
+_USUAL = SystemBlock()
 
 
 def within(what: str, value: Any, low: float, high: float) -> None:

@@ -121,8 +121,9 @@ class Rig:
         return int(self.plc.memory.bits(area)[number])
 
     def terminal(self, device: str) -> int:
-        """What the wiring holds at an input's terminal."""
-        return int(self.plc.inputs.terminals[self._place(device)[1]])
+        """What the wiring holds at an input's terminal, and what an output's terminal gives."""
+        area, number = self._place(device)
+        return int((self.plc.inputs.terminals if area == "X" else self.plc.driven)[number])
 
     def _place(self, device: str) -> tuple[str, int]:
         place = self._places.get(device)
@@ -180,7 +181,7 @@ class Rig:
             for device in self.wiring
             if not device.startswith("Y")
         }
-        outputs = {device: self.bit(device) for device in self.wiring if device.startswith("Y")}
+        outputs = {device: self.terminal(device) for device in self.wiring if device.startswith("Y")}
         return Moment(self.session.plant, inputs, outputs)
 
     # -- steps --------------------------------------------------------------------------------------------------

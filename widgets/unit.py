@@ -7,7 +7,7 @@ PATIENCE_US = 100_000  # a press that no scan sees for so long (a filter, a forc
 
 
 class Unit(Plated):
-    """Inputs and outputs of the unit; a control shows the terminal, a lamp what the program sees."""
+    """Inputs and outputs of the unit; a control shows the terminal, a lamp what the program sees at an input and what an output gives."""
 
     key = "unit"
 
@@ -39,7 +39,7 @@ class Unit(Plated):
             entries[f"{device}.seen"] = rig.bit(device)
             entries[f"{device}.by"] = rig.by(device)
         for device in rig.outputs:
-            entries[device] = rig.bit(device)
+            entries[device] = rig.terminal(device)
         entries.update((f"{device}.forced", int(forced[device])) for device in self.points if device in forced)
         return entries
 

@@ -6,8 +6,6 @@ from ..devices import Bits, Device
 from ..models import Model
 from .program import Unit
 
-FALLING, EDGES = 10, 8  # events 0 to 7 are rising edges of X0 to X7, 10 to 17 falling ones
-
 
 def check_inputs(units: list[Unit], model: Model, report: Callable[..., None], where: Callable[[int], str]) -> None:
     """Report every input that two functions need, and every event that the model has not; `report(line, message, hint, section)`.
@@ -34,8 +32,8 @@ def _uses(units: list[Unit], model: Model) -> Iterator[tuple[int, str, int]]:
     """(input, function, line) in the order of the lines."""
     capture = model.relays.get("capture")
     for unit in units:
-        if unit.event is not None and unit.event % FALLING < EDGES and unit.event < 2 * FALLING:
-            yield unit.event % FALLING, f"the interrupt event {unit.event}", unit.line
+        if unit.event in model.edge_events:
+            yield model.edge_events[unit.event][0], f"the interrupt event {unit.event}", unit.line
         for instruction in unit.instructions:
             if instruction.definition.occupies:
                 named = " ".join((instruction.mnemonic, instruction.written[0]))
@@ -43,7 +41,7 @@ def _uses(units: list[Unit], model: Model) -> Iterator[tuple[int, str, int]]:
                     yield number, named, instruction.line
             if capture is not None:
                 for number in captures(instruction.operands, model):
-                    yield number, f"pulse capture SM{capture + number}", instruction.line
+                    yield number, f"pulse capture {model.special_bits}{capture + number}", instruction.line
 
 
 def captures(operands: tuple, model: Model) -> Iterator[int]:
@@ -52,7 +50,7 @@ def captures(operands: tuple, model: Model) -> Iterator[int]:
     for operand in operands:
         if capture is not None and isinstance(operand, (Device, Bits)) and operand.area == model.special_bits:
             length = 4 * operand.digits if isinstance(operand, Bits) else 1
-            yield from (n - capture for n in range(operand.number, operand.number + length) if 0 <= n - capture < EDGES)
+            yield from (n - capture for n in range(operand.number, operand.number + length) if 0 <= n - capture < model.captures)
 
 
 def occupied(units: list[Unit], model: Model) -> tuple[set[int], set[int]]:
@@ -64,9 +62,7 @@ def occupied(units: list[Unit], model: Model) -> tuple[set[int], set[int]]:
             if instruction.definition.occupies:
                 taken.update(instruction.definition.occupies(model, instruction.operands))
             watched.update(captures(instruction.operands, model))
-    watched.update(
-        unit.event % FALLING for unit in units if unit.event is not None and unit.event < 2 * FALLING and unit.event % FALLING < EDGES
-    )
+    watched.update(model.edge_events[unit.event][0] for unit in units if unit.event in model.edge_events)
     return taken, watched
 
 

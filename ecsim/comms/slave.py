@@ -152,7 +152,8 @@ class Slave:
         run, first = self._range(function, address, count)
         width = 2 * run.words
         values = self.memory.send(run.name, first, count // run.words)
-        return bytes((2 * count,)) + b"".join((value & (1 << 8 * width) - 1).to_bytes(width) for value in values)
+        octets = [(value & (1 << 8 * width) - 1).to_bytes(width) for value in values]
+        return bytes((2 * count,)) + b"".join(octets if self.memory.model.high_word_first else (each[-2:] + each[:-2] for each in octets))
 
     def _write_bit(self, function: int, content: bytes) -> bytes:
         address, value = _two(content)
@@ -183,8 +184,9 @@ class Slave:
         if len(octets) != 2 * count:
             raise Refusal(ILLEGAL_DATA)
         words = unpack(f">{count}h", octets)
-        if run.words == 2:  # high word first
-            words = [wrap(join(high, low), DINT) for high, low in zip(words[::2], words[1::2], strict=True)]
+        if run.words == 2:
+            pairs = zip(words[::2], words[1::2], strict=True)
+            words = [wrap(join(*(pair if self.memory.model.high_word_first else pair[::-1])), DINT) for pair in pairs]
         self._write(run.name, first, list(words))
         return content[:4]
 

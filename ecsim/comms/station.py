@@ -37,7 +37,8 @@ class SlaveStation(Protocol):
 
     def serve(self, now: int) -> None:
         waiting, self.waiting = self.waiting, []
-        self.slave.station = self.port.register("station")
+        if "station" in self.port.map.registers:
+            self.slave.station = self.port.register("station")
         for heard in waiting:
             addressed = self.slave.counts["addressed"]
             answer = self.slave.hear(heard, self.mode.name)

@@ -27,9 +27,9 @@ class Access:
         """The list that holds an area's bits."""
         return f"{area}B" if area in ("T", "C") else area
 
-    def limits(self, kind: DataType, area: str) -> tuple[int, int]:
-        """First and last+1 number that an indexed operand may reach."""
-        count = self.model.areas[area].count
+    def limits(self, kind: DataType, area: str, number: int = 0) -> tuple[int, int]:
+        """First and last+1 number that an indexed operand, or a span, from a number on may reach."""
+        count = self.model.areas[area].end(number)
         if area == "C" and kind.words:
             return (0, self.model.wide_counters) if kind.words == 1 else (self.model.wide_counters, count)
         return 0, count
@@ -141,7 +141,8 @@ class Access:
     def _load_bits(self, kind: DataType, bits: Bits) -> str:
         width = 4 * bits.digits
         if bits.index is not None:
-            return f"at_bits({bits.area}, {self.index(bits)}, {width}, {kind.signed and width == kind.bits})"
+            high = self.limits(kind, bits.area, bits.number)[1]
+            return f"at_bits({bits.area}, {self.index(bits)}, {width}, {high}, {kind.signed and width == kind.bits})"
         parts = [f"{bits.area}[{bits.number + place}]" + (f" << {place}" if place else "") for place in range(width)]
         text = " | ".join(parts)
         if kind.signed and width == kind.bits:
@@ -149,7 +150,7 @@ class Access:
         return f"({text})"
 
     def _load_indexed(self, kind: DataType, device: Device) -> str:
-        low, high = self.limits(kind, device.area)
+        low, high = self.limits(kind, device.area, device.number)
         values = self.bits(device.area) if kind is BOOL else device.area
         if kind.words == 2 and device.area not in ("T", "C"):
             return f"at_{kind.name.lower()}({values}, {self.index(device)}, {high})"
@@ -163,7 +164,9 @@ class Access:
         if isinstance(operand, Bits):
             width = 4 * operand.digits
             if operand.index is not None:
-                return [f"put_bits({operand.area}, {self.index(operand)}, {width}, {text})"]
+                return [
+                    f"put_bits({operand.area}, {self.index(operand)}, {width}, {self.limits(kind, operand.area, operand.number)[1]}, {text})"
+                ]
             return [f"{operand.area}[{operand.number}:{operand.number + width}] = bits_of({text}, {width})"]
         if operand.index is not None:
             return self._store_indexed(kind, operand, text)
@@ -184,7 +187,7 @@ class Access:
         return [f"{ROUNDED} = {name}", f"{name} = {ROUNDED}"]
 
     def _store_indexed(self, kind: DataType, device: Device, text: str) -> list[str]:
-        low, high = self.limits(kind, device.area)
+        low, high = self.limits(kind, device.area, device.number)
         values = self.bits(device.area) if kind is BOOL else device.area
         guard = {self.model.special_bits: "READ_ONLY_BITS", self.model.special_words: "READ_ONLY_WORDS"}.get(device.area, "()")
         if kind.words == 2 and device.area not in ("T", "C"):
@@ -220,10 +223,10 @@ class Access:
             return f"{list(operand.text.encode('ascii').ljust(int(count), bytes(1)))}"
         if isinstance(operand, Constant | IndexedConstant):  # it holds one element, whatever the count
             return f"[{self.load(kind, operand)}][:counted({count})]"
-        _, high = self.limits(kind, operand.area)
+        _, high = self.limits(kind, operand.area, operand.number)
         number = self.place(operand)
         if isinstance(operand, Bits):
-            return f"span_bits({operand.area}, {number}, {4 * operand.digits}, {count}, {kind.signed and 4 * operand.digits == kind.bits})"
+            return f"span_bits({operand.area}, {number}, {4 * operand.digits}, {count}, {high}, {kind.signed and 4 * operand.digits == kind.bits})"
         values = self.bits(operand.area) if kind is BOOL else operand.area
         if self._plain_block(kind, operand, count) and (kind is BOOL or kind.signed):
             return f"{values}[{number}:{operand.number + int(count)}]"
@@ -236,14 +239,16 @@ class Access:
         """Whether a span is a slice of one list, known while compiling, that needs no check."""
         if device.index is not None or not count.isdigit() or device.area in (self.model.special_bits, self.model.special_words):
             return False
-        return (kind.words < 2 or device.area in ("T", "C")) and device.number + int(count) <= self.limits(kind, device.area)[1]
+        return (kind.words < 2 or device.area in ("T", "C")) and device.number + int(count) <= self.limits(
+            kind, device.area, device.number
+        )[1]
 
     def store_span(self, kind: DataType, operand: Device | Bits, text: str, resets: bool, count: str = "") -> list[str]:
         """Statements that write a list of values, `count` if that is known, each in the signed range of `kind`'s width, from an operand on."""
-        _, high = self.limits(kind, operand.area)
+        _, high = self.limits(kind, operand.area, operand.number)
         number = self.place(operand)
         if isinstance(operand, Bits):
-            return [f"put_span_bits({operand.area}, {number}, {4 * operand.digits}, {text})"]
+            return [f"put_span_bits({operand.area}, {number}, {4 * operand.digits}, {text}, {high})"]
         if resets and operand.area in ("T", "C"):
             return [f"reset_span({operand.area!r}, {number}, {text}, {high})"]
         values = self.bits(operand.area) if kind is BOOL else operand.area
@@ -285,8 +290,8 @@ def functions(memory: Memory) -> dict[str, object]:
     def at_real(values, number, high):
         return real_from_words(*pair(values, number, high))
 
-    def at_bits(values, number, width, signed):
-        if not 0 <= number <= len(values) - width:
+    def at_bits(values, number, width, high, signed):
+        if not 0 <= number <= high - width:
             raise Fault(RANGE)
         value = 0
         for bit in reversed(values[number : number + width]):
@@ -312,8 +317,8 @@ def functions(memory: Memory) -> dict[str, object]:
     def put_real(values, number, high, value, guard):
         put_pair(values, number, high, words_from_real(value), guard)
 
-    def put_bits(values, number, width, value):
-        if not 0 <= number <= len(values) - width:
+    def put_bits(values, number, width, high, value):
+        if not 0 <= number <= high - width:
             raise Fault(RANGE)
         values[number : number + width] = bits_of(value, width)
 
@@ -340,10 +345,10 @@ def functions(memory: Memory) -> dict[str, object]:
     def span_real(values, number, count, high):
         return span_pairs(values, number, count, high, "f")
 
-    def span_bits(values, number, width, count, signed):
-        if not 0 <= number <= len(values) - width * counted(count):
+    def span_bits(values, number, width, count, high, signed):
+        if not 0 <= number <= high - width * counted(count):
             raise Fault(RANGE)
-        return [at_bits(values, number + width * i, width, signed) for i in range(count)]
+        return [at_bits(values, number + width * i, width, high, signed) for i in range(count)]
 
     def put_span(values, number, new, high, guard):
         if not 0 <= number <= high - len(new) or (guard and any(n in guard for n in range(number, number + len(new)))):
@@ -359,8 +364,8 @@ def functions(memory: Memory) -> dict[str, object]:
     def put_span_real(values, number, new, high, guard):
         put_span_pairs(values, number, [single(value) for value in new], high, guard, "f")
 
-    def put_span_bits(values, number, width, new):
-        if not 0 <= number <= len(values) - width * len(new):
+    def put_span_bits(values, number, width, new, high):
+        if not 0 <= number <= high - width * len(new):
             raise Fault(RANGE)
         for i, value in enumerate(new):
             values[number + width * i : number + width * (i + 1)] = bits_of(value, width)

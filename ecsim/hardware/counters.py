@@ -23,9 +23,10 @@ AT_ONCE = 6  # 6.10.2: so many comparisons may be driven at one time
 MODULUS = 1 << 32
 LOW, HIGH = -(1 << 31), (1 << 31) - 1
 APART = 8  # us: below this period two phases may fall on one microsecond
-WORTH = {  # what an edge counts: [of the second input?][its level][state of the first input]
+WORTH = {  # what an edge counts: [of the second input?][its level][state of the other input]
     "up/down": (((0, 0), (1, 1)), ((0, 0), (-1, -1))),
     "phases": (((0, 0), (0, 0)), ((0, -1), (0, 1))),  # 8.1.1: with A ON, B turning ON counts up and B turning OFF counts down
+    "fourfold": (((-1, 1), (1, -1)), ((1, -1), (-1, 1))),  # each edge of both
 }
 
 
@@ -142,17 +143,23 @@ class Counters(Unit):
         for counter in self.presets:
             fast = self.model.fast_counters[counter]
             if number in fast.inputs:
-                delta = self._worth(counter, fast, number, level, self.inputs.terminals[fast.inputs[0]])
+                other = fast.inputs[number == fast.inputs[0]] if fast.mode != "single" else number
+                delta = self._worth(counter, fast, number, level, self.inputs.terminals[other])
                 if delta and self._open(fast):
                     self._count(counter, delta, 1)
             elif number in (fast.reset, fast.start):
                 self._control(counter, now)
 
-    def _worth(self, number: int, fast: FastCounter, source: int, level: bool, a: bool) -> int:
-        """What one edge counts; `a` is the state of phase A."""
+    def _mode(self, number: int, fast: FastCounter) -> str:
+        """How a counter counts at present: where the model has a relay for it, both phases may count with each edge."""
+        fourfold = self.model.relays.get("fourfold") if fast.mode == "phases" else None
+        return "fourfold" if fourfold is not None and self._bits()[fourfold + number] else fast.mode
+
+    def _worth(self, number: int, fast: FastCounter, source: int, level: bool, other: bool) -> int:
+        """What one edge counts; `other` is the state of the other phase."""
         if fast.mode == "single":
             return (-1 if self._bits()[self.model.relays["counter direction"] + number] else 1) if level else 0
-        return WORTH[fast.mode][source != fast.inputs[0]][level][a]
+        return WORTH[self._mode(number, fast)][source != fast.inputs[0]][level][other]
 
     # -- runs ---------------------------------------------------------------------------------------------------
 
@@ -169,6 +176,8 @@ class Counters(Unit):
             if first is None or second is None:
                 return (first, True, 1) if first is not None else (second, True, -1) if second is not None else None
             return self._merged
+        if self._mode(number, fast) == "fourfold":
+            return self._merged if first is not None or second is not None else None
         if second is None or (first is None and not self.inputs.terminals[fast.inputs[0]]):
             return None
         if isinstance(first, Train) and isinstance(second, Train):
@@ -184,8 +193,8 @@ class Counters(Unit):
         """(moment, worth) of each counting edge in (after, until], where both inputs move."""
         fast, signals = self.model.fast_counters[number], self.inputs.signals
         first, second = (signals[source].edges(after) if source in signals else iter(()) for source in fast.inputs)
-        a = signals[fast.inputs[0]].level(after) if fast.inputs[0] in signals else self.inputs.terminals[fast.inputs[0]]
-        of_first, of_second = WORTH[fast.mode]
+        a, b = (signals[n].level(after) if n in signals else self.inputs.terminals[n] for n in fast.inputs)
+        of_first, of_second = WORTH[self._mode(number, fast)]
         over = until + 1, False
         one, two = next(first, over), next(second, over)
         while True:
@@ -193,14 +202,14 @@ class Counters(Unit):
                 moment, level = one
                 if moment > until:
                     return
-                worth = of_first[level][a]
+                worth = of_first[level][b]
                 a, one = level, next(first, over)
             else:
                 moment, level = two
                 if moment > until:
                     return
                 worth = of_second[level][a]
-                two = next(second, over)
+                b, two = level, next(second, over)
             if worth:
                 yield moment, worth
 

@@ -1,13 +1,15 @@
 """Errors as the machine reports them: SM3 and SD3 of the system, SM20 to SM22 and the record SD20 to SD24 of the program (2.4, appendix 6)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ..errors import OPERAND, RANGE
 from ..memory import Memory
+from ..models import Model
 from .unit import Unit
 
 KINDS = {RANGE: "fault range", OPERAND: "fault operand"}  # errors with a relay of their own
 BOTH = ("EC10", "EC20")
+FX = ("H1U", "H2U")
 LAMPS = ("off", "flashing", "on")  # of ERR, the gravest last
 
 
@@ -112,7 +114,40 @@ _ROWS = (
     Error(80, "the servo's answer has a wrong checksum", models=("EC10",)),
 )
 ERRORS = {row.code: row for row in _ROWS}
+# What H1U and H2U say instead; Model.fault_codes tells which becomes which.
+_FX_ROWS = (
+    Error(6105, "the program took longer than the watchdog allows", lamp="on", stops=True, remedy="shorten the program or raise D8000"),
+    Error(6401, "the program is damaged", "system", "on", True, remedy="download a program"),
+    Error(6701, "the target of a jump or call does not exist or cannot be reached"),
+    Error(6702, "the subroutine stack is full"),
+    Error(6703, "the interrupt queue is full"),
+    Error(6706, "the value of an operand is illegal, or the number of its device is out of range"),
+    Error(6708, "a special module does not exist or did not answer"),
+)
+KNOWN = ERRORS | {row.code: replace(row, models=FX) for row in _FX_ROWS}
 MEANINGS = {code: row.meaning for code, row in ERRORS.items()}
+
+
+def group_of(model: Model, code: int) -> int:
+    """The number of the relay and register for errors of the same hundred."""
+    return model.fault_groups + model.fault_code(code) // 100
+
+
+def show_group(memory: Memory, group: int, code: int) -> None:
+    """Show an error in its relay and register, 0 for none."""
+    model = memory.model
+    relays, registers = memory.lists[model.special_bits], memory.lists[model.special_words]
+    relays[group], registers[group] = code != 0, code
+    show_any(memory)
+
+
+def show_any(memory: Memory) -> None:
+    """Tell in the relay and register for it whether there is an error of any group."""
+    model = memory.model
+    relays, registers = memory.lists[model.special_bits], memory.lists[model.special_words]
+    shown = [each for each in sorted({group_of(model, row) for row in model.fault_codes}) if relays[each]]
+    relays[model.relays["error"]] = bool(shown)
+    registers[model.registers["error"]] = shown[0] if shown else 0
 
 
 class Faults:
@@ -126,9 +161,12 @@ class Faults:
         self.kinds = {code: model.relays[kind] for code, kind in KINDS.items() if kind in model.relays}
         self.cleared = [self.flag, *(number for code, number in self.kinds.items() if code == OPERAND)]
         self.record, self.length = model.registers["faults"], model.fault_record
+        self.groups = [] if model.fault_groups is None else sorted({group_of(model, code) for code in model.fault_codes})
 
     def note(self, code: int) -> bool:
         """An instruction failed: set the flags, push the record when the code differs from the newest. Gives False, the flow of a failed contact."""
+        if self.groups:
+            return self._note_group(code)
         relays, registers = self.memory.lists[self.bits], self.memory.lists[self.words]
         relays[self.flag] = True
         if code in self.kinds:
@@ -138,14 +176,32 @@ class Faults:
             registers[first : first + self.length] = [code, *registers[first : first + self.length - 1]]
         return False
 
+    def _note_group(self, code: int) -> bool:
+        """The same where each hundred of codes has a relay and a register."""
+        relays, model = self.memory.lists[self.bits], self.memory.model
+        group = group_of(model, code)
+        show_group(self.memory, group, model.fault_code(code))
+        if group == self.flag:
+            relays[model.relays["fault latch"]] = True
+        return False
+
+    def forget(self) -> None:
+        """RUN begins: the errors of execution are over."""
+        for group in self.groups:
+            show_group(self.memory, group, 0)
+
     def executed(self) -> None:
         """An application instruction was executed correctly: SM20 and SM22 go OFF, the record stays."""
         relays = self.memory.lists[self.bits]
         for number in self.cleared:
             relays[number] = False
+        if self.groups:
+            show_any(self.memory)
 
     def codes(self) -> list[int]:
         """The record, newest first."""
+        if self.groups:
+            return [code for group in self.groups if (code := self.memory.lists[self.words][group])]
         return [code for code in self.memory.lists[self.words][self.record : self.record + self.length] if code]
 
 
@@ -159,7 +215,7 @@ class SystemErrors(Unit):
         self.rows = {
             code: row
             for code, row in ERRORS.items()
-            if row.part and (model.name in row.models or (row.relay and row.relay in model.relays))
+            if row.part and (model.name in row.models or code in model.fault_codes or (row.relay and row.relay in model.relays))
         }
         self.damaged: set[int] = set()
         self.found: set[int] = set()  # errors of damaged parts that the machine has noticed
@@ -214,6 +270,9 @@ class SystemErrors(Unit):
     def show(self) -> None:
         """Tell of the errors in special relays and registers."""
         model, codes = self.memory.model, self.codes
+        if model.fault_groups is not None:
+            for group in {group_of(model, code) for code in self.rows}:
+                show_group(self.memory, group, next((model.fault_code(code) for code in codes if group_of(model, code) == group), 0))
         relays, registers = self.memory.lists[model.special_bits], self.memory.lists[model.special_words]
         if "system error" in model.relays:
             relays[model.relays["system error"]] = bool(codes)

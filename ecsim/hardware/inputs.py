@@ -28,6 +28,7 @@ class Inputs(Unit):
         self.taken: frozenset[int] = frozenset()  # inputs of HCNT and SPD: from the second scan on they catch no pulse (8.2)
         self.catching = True
         self.capture = memory.model.relays.get("capture")
+        self.may_catch: Callable[[], bool] = lambda: True
         self.changed = True
         self.check: Callable[[], None] = lambda: None  # looks at the frequencies; given after all units are made
 
@@ -89,7 +90,9 @@ class Inputs(Unit):
             self.filter_us = filter_us
 
     def _catch(self, number: int) -> None:
-        if self.capture is not None and (self.catching or number not in self.taken):
+        if self.capture is None or number >= self.memory.model.captures or not self.may_catch():
+            return
+        if self.catching or number not in self.taken:
             self.memory.lists[self.memory.model.special_bits][self.capture + number] = True
 
     # -- time ---------------------------------------------------------------------------------------------------

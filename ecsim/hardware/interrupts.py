@@ -8,13 +8,10 @@ the queue is closed: what comes then is lost (error 67) until the queue is empty
 from ..errors import QUEUE_FULL
 from ..memory import Memory
 from .faults import Faults
-from .inputs import FAST, Inputs
+from .inputs import Inputs
 from .unit import Unit
 
 DEPTH = 8
-FALLING = 10  # events 0 to 7 are rising edges of X0 to X7, 10 to 17 falling ones
-TIMED = {26: 66, 27: 67, 28: 68}  # event -> the register with its period in ms
-POWER_LOSS = 29
 
 
 class Interrupts(Unit):
@@ -28,7 +25,8 @@ class Interrupts(Unit):
         self.enables = memory.model.events
         self.enabled = False
         self.routines: dict[int, str] = {}
-        self.timed: dict[int, int] = {}
+        self.timed: dict[int, int] = {}  # event -> the register with its period
+        self.fixed: dict[int, int] = {}  # event -> its period in us
         self.edges: list[tuple[int, bool, int]] = []  # input, sense, event: those with a routine
         self.due: dict[int, tuple[int, int]] = {}  # event -> its next moment, its period in us
         self.queue: list[int] = []
@@ -41,9 +39,13 @@ class Interrupts(Unit):
 
     def fire(self, event: int) -> None:
         """An event has come; a request that is not allowed is lost."""
-        enable = self.enables.get(event)
-        if self.enabled and enable is not None and self.memory.lists[self.memory.model.special_bits][enable]:
+        if self.enabled and self.allowed(event):
             self.request(event)
+
+    def allowed(self, event: int) -> bool:
+        """Whether the event's own relay lets it ask."""
+        relay = self.enables.get(event)
+        return relay is not None and bool(self.memory.lists[self.memory.model.special_bits][relay]) is not self.memory.model.events_masked
 
     def request(self, event: int) -> None:
         """Queue a request; one without a routine is no operation."""
@@ -73,33 +75,28 @@ class Interrupts(Unit):
     def assign(self, routines: dict[int, str]) -> None:
         """The interrupt programs of the program that begins to run."""
         self.routines = routines
-        self.timed = {event: register for event, register in TIMED.items() if event in self.enables}
-        self.edges = [
-            (number, rising, event)
-            for number in range(FAST)
-            for rising, event in ((True, number), (False, number + FALLING))
-            if event in routines
-        ]
+        model = self.memory.model
+        self.timed = {event: register for event, register in model.timed_registers.items() if event in self.enables}
+        self.fixed = {event: 1000 * ms for event, ms in model.timed_ms.items() if event in routines}
+        self.edges = [(*model.edge_events[event], event) for event in model.edge_events if event in routines]
         self.wake(bool(routines))
         self.inputs.check()
 
     def look(self, now: int) -> None:
         """A timed interrupt begins its first period when it is enabled, and again when its period was changed."""
-        relays, registers = self.memory.lists[self.memory.model.special_bits], self.memory.lists[self.memory.model.special_words]
-        for event, register in self.timed.items():
-            period = registers[register] * 1000
-            if not relays[self.enables[event]] or period <= 0:
+        registers = self.memory.lists[self.memory.model.special_words]
+        for event, period in (*((event, 1000 * registers[register]) for event, register in self.timed.items()), *self.fixed.items()):
+            if not self.allowed(event) or period <= 0:
                 self.due.pop(event, None)
             elif event not in self.due or self.due[event][1] != period:
                 self.due[event] = now + period, period
 
     def _edges(self, until: int) -> list[tuple[int, int]]:
         """The next edge of each signal that may ask for a routine, as (moment, event)."""
-        relays = self.memory.lists[self.memory.model.special_bits]
         found = []
         for number, rising, event in self.edges:
             signal = self.inputs.signals.get(number)
-            if signal is not None and relays[self.enables[event]]:
+            if signal is not None and self.allowed(event):
                 moment = signal.time(rising, self.time, 1)
                 if moment is not None and moment <= until:
                     found.append((moment, event))
@@ -107,8 +104,8 @@ class Interrupts(Unit):
 
     def _times(self, event: int, now: int) -> int:
         """How many edges of an event fall on this microsecond."""
-        signal = self.inputs.signals[event % FALLING]
-        return signal.count(event < FALLING, now - 1, now)
+        number, rising = self.memory.model.edge_events[event]
+        return self.inputs.signals[number].count(rising, now - 1, now)
 
     def next(self, until: int) -> int | None:
         first = None
@@ -137,8 +134,9 @@ class Interrupts(Unit):
         self.time = now - 1
 
     def edge(self, number: int, level: bool, now: int) -> None:
-        if self.routines:
-            self.fire(number if level else number + FALLING)
+        for source, rising, event in self.edges:
+            if source == number and rising is level:
+                self.fire(event)
 
     def snapshot(self) -> tuple:
         return self.enabled, self.closed, dict(self.routines), dict(self.due), list(self.queue), self.time

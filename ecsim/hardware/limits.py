@@ -1,5 +1,8 @@
 """How fast inputs may be (6.10.8, 8.1.4, 8.2, 9.4): what is faster is counted all the same, and said in `warnings`."""
 
+from collections import defaultdict
+from math import inf
+
 from .counters import Counters
 from .inputs import FAST, Inputs
 from .interrupts import Interrupts
@@ -15,7 +18,7 @@ class FrequencyLimits(Unit):
     def __init__(self, inputs: Inputs, counters: Counters, meters: Meters, interrupts: Interrupts, awake: list[Unit]):
         super().__init__(awake)
         self.inputs, self.counters, self.meters, self.interrupts = inputs, counters, meters, interrupts
-        self.limits = counters.model.limits
+        self.limits = defaultdict(lambda: inf, counters.model.limits)  # of what is not known no one is warned
         self.warnings: list[str] = []
 
     def _khz(self, number: int) -> float:

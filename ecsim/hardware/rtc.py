@@ -67,7 +67,8 @@ class RealTimeClock(Unit):
     def refresh(self, now: int) -> None:
         """Show date and time in the clock's registers; `due` is when they change next."""
         if self.first is not None:
-            self.memory.lists[self.memory.model.special_words][self.first : self.first + 7] = self.read(now)
+            model, values = self.memory.model, self.read(now)
+            self.memory.lists[model.special_words][self.first : self.first + 7] = [values[part] for part in model.clock_order]
             self.due = now + SECOND_US - (now - self.since) % SECOND_US
 
     def restart(self, now: int) -> None:

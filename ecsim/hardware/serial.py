@@ -2,7 +2,7 @@
 
 from collections import deque
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from ..errors import EcsimError
@@ -23,7 +23,7 @@ _FRAMES = {"freeport": (9600, 8, "none", 1), "modbus": (19200, 8, "even", 1), "e
 class PortSettings:
     """What the system block sets for one serial port (2.2.1, 10.3.2, 10.4.13).
 
-    `protocol` is "programming", "none", "freeport", "modbus slave", "modbus master" or "ecbus"; where baud rate, data bits, parity
+    `protocol` is "programming", "none", "freeport", "rs", "modbus slave", "modbus master" or "ecbus"; where baud rate, data bits, parity
     and stop bits are None, they are the usual ones of the protocol (freeport 9600 8N1, Modbus 19200 8E1, 7E1 in ASCII mode).
     Characters are numbers from 0 to 255, None for none; a time of 0 ms is not watched. On an ECbus station 0 says for all how many
     stations there can be, the refresh mode, the retries and an additional delay (10.5.4).
@@ -75,7 +75,7 @@ class PortSettings:
         _choice(f"the baud rate of {where}", framing.baud, model.bauds[self.protocol])
         _choice(f"the parity of {where}", framing.parity, PARITIES)
         _choice(f"the data bits of {where}", framing.data_bits, (7 if self.mode == "ascii" else 8,) if self.modbus else (7, 8))
-        stops = ((2,) if framing.parity == "none" else (1,)) if self.modbus else (1, 2)  # 10.4.13: 1 with parity, 2 without
+        stops = model.modbus_stop_bits.get(framing.parity, (1, 2)) if self.modbus else (1, 2)
         _choice(f"the stop bits of {where}", framing.stop_bits, stops)
         _whole(f"the station of {where}", self.station, 1 if self.protocol == "modbus slave" else 0, 31)
         _whole(f"timeout_ms of {where}", self.timeout_ms, 1, 32767)
@@ -122,6 +122,9 @@ class Protocol:
     def sent(self, now: int) -> None:
         """All that was to be sent has gone out."""
 
+    def release(self, claim: int, now: int) -> None:
+        """The command with this number has lost its flow."""
+
     def timeout(self, now: int) -> None:
         """The moment that `due` named has come."""
 
@@ -167,8 +170,11 @@ class Port(Unit, End):
 
     def set_up(self, settings: PortSettings | None) -> None:
         """Take over the settings of the system block; None leaves the port as the unit comes."""
-        self.settings = settings or PortSettings(self.map.protocols[0])
+        self.settings = self.chosen = settings or PortSettings(self.map.protocols[0])
+        self.told = (0, 0)
         self._begin()
+        if self.memory.model.protocol_codes:
+            self.show()
 
     def reserve(self, on: bool) -> None:
         """Keep the port for the programming software, whatever the system block says (10.1), or give it back."""
@@ -188,17 +194,19 @@ class Port(Unit, End):
     def power(self, on: bool) -> None:
         """Switched off a port neither hears nor sends; switched on it begins anew."""
         self.powered = on
-        self.set_up(self.settings)
+        self.set_up(self.chosen)
 
     # -- special devices ----------------------------------------------------------------------------------------
 
     def on(self, meaning: str) -> bool:
-        """Whether a relay of the port is ON."""
-        return self.memory.lists[self.memory.model.special_bits][self.map.relays[meaning]]
+        """Whether a relay of the port is ON; not where the model has none."""
+        relay = self.map.relays.get(meaning)
+        return relay is not None and self.memory.lists[self.memory.model.special_bits][relay]
 
     def tell(self, meaning: str, on: bool) -> None:
-        """Turn a relay of the port ON or OFF."""
-        self.memory.lists[self.memory.model.special_bits][self.map.relays[meaning]] = on
+        """Turn a relay of the port ON or OFF, if the model has it."""
+        if meaning in self.map.relays:
+            self.memory.lists[self.memory.model.special_bits][self.map.relays[meaning]] = on
 
     def register(self, meaning: str) -> int:
         """A register of the port without its sign, 0 where the model has none."""
@@ -218,15 +226,20 @@ class Port(Unit, End):
 
     def show(self) -> None:
         """The settings in the registers from which the program reads, and may change, them."""
-        settings, framing = self.settings, self.framing
-        parts = (
-            (framing.stop_bits == 2, 3), (framing.parity == "odd", 4), (framing.parity != "none", 5), (framing.data_bits == 7, 6),
-            (settings.start_char is not None, 7), (settings.end_char is not None, 8),
-            (settings.gap_timeout_ms > 0, 9), (settings.frame_timeout_ms > 0, 10),
-        )  # fmt: skip
-        self.put("mode", self.memory.model.baud_codes[framing.baud] + sum(1 << place for on, place in parts if on))
-        self.put("start character", settings.start_char or 0)
-        self.put("end character", settings.end_char or 0)
+        settings, framing, model = self.settings, self.framing, self.memory.model
+        parts = {
+            "two stop bits": framing.stop_bits == 2, "parity": framing.parity != "none", "odd": framing.parity == "odd",
+            "even": framing.parity == "even", "seven bits": framing.data_bits == 7, "eight bits": framing.data_bits == 8,
+            "start character": settings.start_char is not None, "end character": settings.end_char is not None,
+            "gap timeout": settings.gap_timeout_ms > 0, "frame timeout": settings.frame_timeout_ms > 0,
+        }  # fmt: skip
+        word = sum(1 << place for what, place in model.mode_bits.items() if parts.get(what))
+        self.put("mode", word | model.baud_codes[framing.baud] << model.mode_bits["baud"])
+        for meaning, character in (("start character", settings.start_char), ("end character", settings.end_char)):
+            if character is not None or not model.protocol_codes:
+                self.put(meaning, character or 0)
+        code = next((code for code, named in model.protocol_codes.items() if named == (settings.protocol, settings.mode)), 0)
+        self.put("protocol", code)
         self.put("gap timeout", settings.gap_timeout_ms)
         self.put("frame timeout", settings.frame_timeout_ms)
         self.tell("idle", not self.protocol.busy)
@@ -234,6 +247,40 @@ class Port(Unit, End):
         self.put("timeout", settings.delay_ms if settings.protocol == "ecbus" else settings.timeout_ms)
         self.put("refresh mode", settings.refresh_mode if settings.protocol == "ecbus" else 0)
         self.put("retries", settings.retries)
+        self.told = self.register("mode"), self.register("protocol")
+
+    def obey(self) -> None:
+        """Take over another format or protocol where the program has written one into the port's registers.
+
+        A code that means nothing, or a rate that there is not, leaves the port as it is.
+        """
+        model = self.memory.model
+        told = self.register("mode"), self.register("protocol")
+        if told == self.told or "protocol" not in self.map.registers:
+            return
+        self.told = told
+        word, places = told[0], model.mode_bits
+        rates = {code: baud for baud, code in model.baud_codes.items()}
+        baud = rates.get(word >> places["baud"] & 15)
+        protocol, mode = model.protocol_codes.get(told[1], (self.chosen.protocol, self.chosen.mode))
+        if baud is None:
+            return
+
+        def says(what: str) -> bool:
+            return bool(word >> places[what] & 1)
+
+        self.settings = replace(
+            self.chosen,
+            protocol=protocol,
+            mode=mode,
+            baud=baud,
+            data_bits=8 if says("eight bits") else 7,
+            parity="none" if not says("parity") else "even" if says("even") else "odd",
+            stop_bits=2 if says("two stop bits") else 1,
+            start_char=self.register("start character") & 0xFF if says("start character") else None,
+            end_char=self.register("end character") & 0xFF if says("end character") else None,
+        )
+        self._begin()
 
     # -- the line -----------------------------------------------------------------------------------------------
 
@@ -319,6 +366,9 @@ class Port(Unit, End):
         self.protocol.begin(now)
         self.stirred()
 
+    def release(self, claim: int, now: int) -> None:
+        self.protocol.release(claim, now)
+
     def snapshot(self) -> tuple:
         stations = self.drives
         return (
@@ -329,6 +379,7 @@ class Port(Unit, End):
     def restore(self, snapshot: tuple) -> None:
         self.powered, sent, heard, protocol, stations, now, reserved = snapshot
         self.reserve(reserved)
+        self.obey()
         self.send_on(sent)
         self.heard = deque(map(tuple, heard))
         self.protocol.restore(protocol)

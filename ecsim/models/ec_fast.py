@@ -27,6 +27,12 @@ _EVENTS_EC20 = {
 }
 _EVENTS_EC10 = _EVENTS_EC20 | {18: 63, 19: 64, 29: 56, **{event: event + 18 for event in range(30, 38)}}
 
+_EVENTS = {
+    "edge_events": {number + 10 * (not rising): (number, rising) for number in range(8) for rising in (True, False)},
+    "timed_registers": {26: 66, 27: 67, 28: 68},
+    "power_loss_event": 29,
+}
+
 RELAYS = {"capture": 90, "table done": 185}
 REGISTERS = {
     "pulses of all": 54, "base frequency": 84, "top frequency": 85, "ramp time": 87,
@@ -51,8 +57,9 @@ def _pulse_outputs(**more: int) -> tuple[PulseOutput, ...]:
     )
 
 
-EC20 = {"fast_counters": FAST_COUNTERS, "events": _EVENTS_EC20, "pulse_outputs": _pulse_outputs()}
+EC20 = {"fast_counters": FAST_COUNTERS, "events": _EVENTS_EC20, **_EVENTS, "pulse_outputs": _pulse_outputs()}
 EC10 = {
-    "fast_counters": FAST_COUNTERS, "events": _EVENTS_EC10, "pulse_outputs": _pulse_outputs(clear=2, segment=56), "least_ramp_ms": 50
+    "fast_counters": FAST_COUNTERS, "events": _EVENTS_EC10, **_EVENTS,
+    "pulse_outputs": _pulse_outputs(clear=2, segment=56), "least_ramp_ms": 50,
 }  # fmt: skip
 RELAYS_EC10 = {"clear signal": 85}

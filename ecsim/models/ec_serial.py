@@ -10,6 +10,11 @@ BAUDS = {
     "programming": SLOW, "none": SLOW, "freeport": SLOW, "modbus slave": SLOW, "modbus master": SLOW,
     "ecbus": (115200, 57600, *SLOW),
 }  # fmt: skip
+STOP_BITS = {"none": (2,), "odd": (1,), "even": (1,)}  # 10.4.13
+MODE_BITS = {
+    "baud": 0, "two stop bits": 3, "odd": 4, "parity": 5, "seven bits": 6, "start character": 7, "end character": 8,
+    "gap timeout": 9, "frame timeout": 10,
+}  # fmt: skip
 BAUD_CODES = {38400: 0, 19200: 1, 9600: 2, 4800: 3, 2400: 4, 1200: 5, 57600: 6, 115200: 7}  # SD110.0 to SD110.2
 
 _RELAYS = {"sending": 0, "receiving": 1, "sent": 2, "received": 3, "idle": 4}

@@ -44,20 +44,20 @@ _RELAYS = {
     "battery lamp off": 8030, "hold memory": 8033, "outputs off": 8034, "constant scan": 8039,
     "hold transitions": 8040, "transfer start": 8041, "start pulse": 8042, "outputs kept": 8045, "hexadecimal": 8167,
     "step active": 8046, "monitor steps": 8047, "annunciator": 8048, "monitor annunciators": 8049,
-    "system error": 8061, "fault": 8067, "fault latch": 8068, "exchange": 8160, "bytewise": 8161, "unconverted": 8168,
+    "fault": 8067, "fault latch": 8068, "exchange": 8160, "bytewise": 8161, "unconverted": 8168,
     "counter direction": 8000,  # M(8000 + n) for C(n)
-    **fx_fast.RELAYS, **fx_pulses.RELAYS, **fx_serial.RELAYS,
+    **fx_fast.RELAYS, **fx_pulses.RELAYS,
 }  # fmt: skip
 _REGISTERS = {
     "watchdog": 8000, "capacity": 8002, "scan time": 8010, "least scan time": 8011, "greatest scan time": 8012, "clock": 8013,
     "input filter": 8020, "constant scan": 8039, "active steps": 8040, "annunciator": 8049,
-    "system error": 8061, "faults": 8067, "fault latch": 8068, **fx_pulses.REGISTERS, **fx_serial.REGISTERS,
+    "error": 8004, "faults": 8067, **fx_pulses.REGISTERS,
 }  # fmt: skip
 # What the system alone writes.
 _READ_ONLY_RELAYS = {
-    *range(8000, 8006), *range(8011, 8015), 8046, 8048, *range(8060, 8068), *range(8246, 8256), *fx_pulses.BUSY, *fx_serial.READ_ONLY_RELAYS
+    *range(8000, 8006), *range(8011, 8015), 8046, 8048, *range(8060, 8068), *range(8246, 8256), *fx_pulses.BUSY
 }  # fmt: skip
-_READ_ONLY_REGISTERS = {8002, *range(8010, 8013), *range(8013, 8020), *range(8040, 8048), 8049, *range(8060, 8070)}
+_READ_ONLY_REGISTERS = {8002, 8004, *range(8010, 8020), *range(8040, 8048), 8049, *range(8060, 8070)}
 
 H2U = Model(
     name="H2U",
@@ -103,9 +103,31 @@ H2U = Model(
     strict_steps=True,
     overlap=True,
     pulse_suffix="P",
+    clears_at_stop=True,
+    latched_relays=frozenset({8068}),
+    scan_time_us=100,
+    clock_order=(5, 4, 3, 2, 1, 0, 6),
+    fault_codes={
+        40: 6401, 61: 6105, 64: 6706, 65: 6706, 66: 6702, 67: 6703, 68: 6701, 69: 6706, 70: 6706, 72: 6701, 73: 6708, 74: 6708,
+        75: 6706, 76: 6706, 77: 6706, 78: 6708,
+    },
+    fault_groups=8000,
+    retention_limits={"ranges": 2},
+    usual_retention={"M": ((500, 1023),), "S": ((500, 999),), "C": ((100, 199), (220, 255)), "D": ((200, 511),)},
+    fixed_retention={"M": ((1024, 3071),), "T": ((246, 255),), "D": ((512, 7999),)},
+    unset={
+        "hold_values": "M8033 does that",
+        "stop_outputs": "outputs go OFF, or stay with M8033 ON",
+        "stop_output_table": "outputs go OFF, or stay with M8033 ON",
+        "constant_scan_ms": "set M8039 and write the time into D8039",
+        "no_battery": "M8030 switches its lamp off",
+        "interrupt_priority": "all interrupts have the same",
+        "format_lock": "leave it out",
+        "modules": "set modules up with TO",
+    },
     fault_record=1,
     base_units=((10, 10), (16, 16), (24, 16), (32, 32), (36, 24), (40, 40), (64, 64)),
-    initial_registers=fx_pulses.INITIAL,
+    initial_registers=fx_pulses.INITIAL | fx_serial.INITIAL,
     **fx_fast.H2U,
     **fx_pulses.H2U,
     **fx_serial.H2U,
@@ -118,5 +140,16 @@ H1U = replace(
     spelling=fx_spelling.H1U,
     operand_ranges=H2U.operand_ranges | {"PULSE": (0, 1)},
     **fx_pulses.H1U,
+    **fx_fast.H1U,
+    **fx_serial.H1U,
+    retention_limits={"ranges": 0},
+    usual_retention={},
+    fixed_retention={
+        "M": ((384, 1535),),
+        "S": ((128, 999),),
+        "T": ((246, 255),),
+        "C": ((16, 199), (220, 255)),
+        "D": ((128, 7999),),
+    },
     base_units=((8, 6), (14, 10), (16, 14), (24, 16), (36, 24), (40, 40)),
 )

@@ -160,6 +160,7 @@ H2U: dict[str, str | By] = {
     "TO": "FX:TO",
     "DTO": "FX:DTO",
     # FNC 80 to 88: serial devices
+    "RS": "FX:RS",
     "PRUN": By("FX:PRUN", ("KnM", *ALL, "FX:PRUN M")),
     "DPRUN": By("FX:DPRUN", ("KnM", *ALL, "FX:DPRUN M")),
     "ASCI": "FX:ASCI",

@@ -190,12 +190,16 @@ class Model:
     index_pairs: dict[str, str] = field(default_factory=dict)  # where the high word of a 32-bit number in an index register lies
     least_wide_digits: int = 5  # of a Kn string that holds a 32-bit number
     annunciators: range = range(0)  # steps that tell of faults of the machine
+    clears_at_stop: bool = False  # what is not retained is cleared when RUN ends, not when it begins, unless "hold memory" is ON
+    latched_relays: frozenset[int] = frozenset()  # special relays that keep what they are then
+    scan_time_us: int = 1000  # the unit in which scan times are noted
+    clock_order: tuple[int, ...] = (0, 1, 2, 3, 4, 5, 6)  # of year, month, day, hour, minute, second, weekday in their registers
     local_areas: tuple[str, ...] = ("LM", "V")  # bits and words of the unit that is executed: put aside by a call and an interrupt
     high_word_first: bool = True
     type_code: int = 0
     step_surcharge: tuple[str, int] | None = None  # contacts on this area from this number on are one step longer
     spelling: dict[str, str | By] = field(default_factory=dict)  # the family's name of each instruction -> TABLE's; empty: TABLE's own
-    operand_ranges: dict[str, tuple[int, int]] = field(default_factory=dict)  # kind of operand -> its numbers, where they differ from the usual
+    operand_ranges: dict[str, tuple[int, int]] = field(default_factory=dict)  # kind of operand -> its numbers, where they differ
     functions: dict[str, str] = field(default_factory=dict)  # name of an instruction -> where the family's manual has it
     sections: dict[str, str] = field(default_factory=dict)  # section of EC's manual -> the family's on the same; empty: the same manual
     levels: bool = False  # MC has a level: the end of one ends those inside it
@@ -203,10 +207,22 @@ class Model:
     overlap: bool = False  # in the scan of a transition the step that is left stays ON beside the one that begins
     pulse_suffix: str = ""  # behind a mnemonic: executed only in the scan in which its flow rises
     fault_record: int = 5  # so many registers from "faults" on keep the codes of the last errors
+    fault_codes: dict[int, int] = field(default_factory=dict)  # code of appendix 6 -> the family's own
+    fault_groups: int | None = None  # where each hundred of codes has a relay and a register of its own: the one of code 0
     initial_registers: dict[int, int] = field(default_factory=dict)
     retention_limits: dict[str, int] = field(default_factory=dict)
+    usual_retention: dict[str, tuple[tuple[int, int], ...]] = field(default_factory=dict)  # of areas whose ranges are not named
+    fixed_retention: dict[str, tuple[tuple[int, int], ...]] = field(default_factory=dict)  # whatever it names
+    unset: dict[str, str] = field(default_factory=dict)  # settings that the system block does not have -> what to do instead
     fast_counters: dict[int, FastCounter] = field(default_factory=dict)
     events: dict[int, int] = field(default_factory=dict)  # interrupt event -> the special relay that enables it (9.1)
+    events_masked: bool = False  # that relay forbids the event instead
+    edge_events: dict[int, tuple[int, bool]] = field(default_factory=dict)  # event -> its input, whether it is the rising edge
+    timed_registers: dict[int, int] = field(default_factory=dict)  # event -> the register with its period in ms
+    timed_ms: dict[int, int] = field(default_factory=dict)  # event -> its period, where that is fixed
+    power_loss_event: int | None = None
+    captures: int = 8  # so many inputs from X0 on have a relay that catches their pulses
+    captures_when_enabled: bool = False  # they do so only after EI
     least_ramp_ms: int = 0  # of PLSR
     pulse_outputs: tuple[PulseOutput, ...] = ()
     battery: bool = True  # whether a battery keeps the retained devices (2.1.10)
@@ -214,6 +230,7 @@ class Model:
     modbus: tuple[ModbusRange, ...] = ()
     modbus_most: dict[int, int] = field(default_factory=dict)  # function -> the most devices or registers of one request
     modbus_modes: tuple[str, ...] = ("rtu", "ascii")
+    modbus_stop_bits: dict[str, tuple[int, ...]] = field(default_factory=dict)  # parity -> what goes with it; one that is not named: 1 or 2
     ports: tuple[PortMap, ...] = ()
     base_units: tuple[tuple[int, int], ...] = ()  # inputs and outputs of the units to choose from
     module_kinds: dict[str, ModuleKind] = field(default_factory=dict)
@@ -224,6 +241,8 @@ class Model:
     shared: dict[int, SharedArea] = field(default_factory=dict)  # refresh mode of ECbus -> what is shared
     buffers: dict[str, tuple[str, int, int]] = field(default_factory=dict)  # meaning -> area, first and count of what the system uses
     baud_codes: dict[int, int] = field(default_factory=dict)  # baud rate -> what the mode word of a port says for it
+    mode_bits: dict[str, int] = field(default_factory=dict)  # what else it says -> its bit; "baud" is the lowest of the code
+    protocol_codes: dict[int, tuple[str, str]] = field(default_factory=dict)  # code in a port's register -> protocol, Modbus mode
 
     def spelled(self, key: str) -> list[str]:
         """The names that this model has for an instruction of TABLE."""
@@ -235,6 +254,15 @@ class Model:
             return section
         found = max((known for known in self.sections if section == known or section.startswith(f"{known}.")), key=len, default="")
         return self.sections.get(found, "")
+
+    def fault_code(self, code: int) -> int:
+        """How this family numbers an error of appendix 6."""
+        return self.fault_codes.get(code, code)
+
+    def ordinary(self, area: str) -> int:
+        """How many devices of an area are not special, from 0 on."""
+        special = self.special(area)
+        return min(self.areas[area].end(0), special.start or self.areas[area].count)
 
     def timer_base_us(self, number: int) -> int:
         """The time unit of a timer in microseconds."""
