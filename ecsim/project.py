@@ -25,7 +25,7 @@ import os
 import re
 import tempfile
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
@@ -93,10 +93,17 @@ class Project:
         paths = sorted(folder.glob("*.il"))
         if not paths:
             raise EcsimError(f"{folder} holds no .il file; put the program into {folder / 'main.il'}")
-        toml = _text(folder / SETTINGS) if (folder / SETTINGS).exists() else ""
-        project = cls(
-            {each.name: _text(each) for each in paths}, folder.name, toml=toml, origin=frozenset(each.resolve() for each in paths)
-        )
+        settings = [folder / SETTINGS] if (folder / SETTINGS).exists() else []
+        project = cls.spelled({each.name: _text(each) for each in [*paths, *settings]}, folder.name)
+        project.origin = frozenset(each.resolve() for each in paths)
+        return project
+
+    @classmethod
+    def spelled(cls, texts: Mapping[str, str], name: str = "") -> "Project":
+        """The project that some texts by file name make, plc.toml among them or not; raises ProgramError as `read` does."""
+        files = dict(texts)
+        toml = files.pop(SETTINGS, "")
+        project = cls(files, name, toml=toml)
         problems = project._take(toml)
         if problems:
             try:

@@ -57,6 +57,8 @@ def _grade(options: argparse.Namespace) -> int:
         return _grade_class(exercise, options, limits)
     if options.report or options.scheduler or options.workers:
         raise EcsimError("--report, --scheduler and --workers are for a folder of submissions")
+    if options.hint and sys.stderr.isatty():
+        print("grading; the search for a hint may take 20 s", file=sys.stderr)
     with Judge(place_of(exercise), options.model, limits, options.hint) as judge:
         report = judge.grade(Submission.read(options.answer))
     if options.html is not None:

@@ -4,7 +4,7 @@ The same edits make the faulty programs that measure an exercise's rules and loo
 """
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from ..assembler.reader import Source, Statement, read
@@ -14,6 +14,7 @@ CONTACTS = {"LD": "LDI", "LDI": "LD", "AND": "ANI", "ANI": "AND", "OR": "ORI", "
 JOINED = {"AND": "OR", "OR": "AND", "ANI": "ORI", "ORI": "ANI", "ANB": "ORB", "ORB": "ANB"}
 COILS = {"OUT": ("SET",), "SET": ("OUT", "RST"), "RST": ("SET",)}
 TIMERS = {"TON": ("TOF", "TONR"), "TOF": ("TON",), "TONR": ("TON",)}
+STEPS = {"INC": ("DEC",), "DEC": ("INC",), "ADD": ("SUB",), "SUB": ("ADD",)}
 COMPARISONS = {"=": ("<>", ">="), "<>": ("=",), ">": (">=", "<="), ">=": (">", "<"), "<": ("<=", ">="), "<=": ("<", ">")}
 SMALL = 20  # numbers above it are changed by a tenth: one unit of 100 ms in five minutes is what every statement leaves open
 _COMPARISON = re.compile(r"(LD|AND|OR)([DR]?)(=|<>|>=|<=|>|<)")
@@ -34,20 +35,34 @@ class Edit:
         return f"line {self.line}: {self.old} -> {self.new or 'nothing'}"
 
 
-def edits(text: str, inserting: bool = False, devices: Iterable[str] = ()) -> Iterator[Edit]:
-    """Every single edit of a program; `inserting` adds what was forgotten: contacts and coils of the program's bits and of `devices`."""
+def edits(text: str) -> Iterator[Edit]:
+    """Every single slip of the hand in a program."""
     source = read(text)
     named = _neighbours(source)
-    bits = list(dict.fromkeys([*(other for others in named.values() for other in others), *devices]))
+    for statement in _statements(source):
+        old = " ".join((statement.mnemonic, *statement.operands))
+        for new in dict.fromkeys(_changes(statement, named)):
+            if new != old:
+                yield Edit(statement.line, old, new, _with_line(text, statement.line, new))
+
+
+def additions(text: str, contacts: Sequence[str], coils: Sequence[str], words: Sequence[str] = ()) -> Iterator[Edit]:
+    """What may have been forgotten: edges, contacts and coils of these bits and comparisons of these words behind a line, or another number
+    of the program in a number's place.
+
+    `new` has the line and, below it, what is added.
+    """
+    source = read(text)
+    numbers = list(dict.fromkeys(one for statement in _statements(source) for one in statement.operands if _NUMBER.fullmatch(one)))
+    for statement in _statements(source):
+        old = " ".join((statement.mnemonic, *statement.operands))
+        for new in _additions(statement, contacts, coils, words, numbers):
+            yield Edit(statement.line, old, new, _with_line(text, statement.line, new))
+
+
+def _statements(source: Source) -> Iterator[Statement]:
     for unit in source.units:
-        for statement in unit.statements:
-            old = " ".join((statement.mnemonic, *statement.operands))
-            for new in dict.fromkeys(_changes(statement, named)):
-                if new != old:
-                    yield Edit(statement.line, old, new, _with_line(text, statement.line, new))
-            if inserting:
-                for new in _additions(statement, bits):
-                    yield Edit(statement.line, old, new, _with_line(text, statement.line, new))
+        yield from unit.statements
 
 
 def _with_line(text: str, number: int, code: str) -> str:
@@ -63,7 +78,7 @@ def _changes(statement: Statement, named: dict[str, list[str]]) -> Iterator[str]
     for table in (CONTACTS, JOINED):
         if word in table:
             yield " ".join((table[word], *operands))
-    for table in (COILS, TIMERS):
+    for table in (COILS, TIMERS, STEPS):
         for other in table.get(word, ()):
             yield " ".join((other, *operands))
     compared = _COMPARISON.fullmatch(word)
@@ -110,14 +125,20 @@ def _neighbours(source: Source) -> dict[str, list[str]]:
     return near
 
 
-def _additions(statement: Statement, bits: Sequence[str]) -> Iterator[str]:
-    """A contact more behind this statement, or a coil of a bit more."""
-    word = statement.mnemonic.upper()
+def _additions(
+    statement: Statement, contacts: Sequence[str], coils: Sequence[str], words: Sequence[str], numbers: Sequence[str]
+) -> Iterator[str]:
+    """What one statement may become when something behind it was forgotten, or a number was taken from elsewhere."""
+    word, operands = statement.mnemonic.upper(), list(statement.operands)
     row = TABLE.get(word)
-    own = " ".join((statement.mnemonic, *statement.operands))
+    own = " ".join((statement.mnemonic, *operands))
     if row is not None and row.form == "contact":
-        yield from (f"{own}\n{joint} {bit}" for bit in bits for joint in ("AND", "ANI"))
-        yield f"{own}\nEU"
-        yield f"{own}\nED"
+        yield from (f"{own}\n{edge}" for edge in ("EU", "ED"))
+        yield from (f"{own}\n{joint} {bit}" for bit in contacts for joint in ("AND", "ANI", "OR", "ORI"))
+        compared = dict.fromkeys(("0", *numbers))
+        yield from (f"{own}\nAND{sign} {word} {number}" for word in words for number in compared for sign in (">", "<", "="))
     elif word in ("OUT", "SET", "RST"):
-        yield from (f"{own}\n{coil} {bit}" for bit in bits for coil in ("RST", "OUT"))
+        yield from (f"{own}\n{coil} {bit}" for bit in coils for coil in ("RST", "OUT", "SET"))
+    for place, operand in enumerate(operands):
+        if _NUMBER.fullmatch(operand):
+            yield from (" ".join((word, *operands[:place], other, *operands[place + 1 :])) for other in numbers if other != operand)

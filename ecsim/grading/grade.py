@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -25,10 +25,11 @@ BEHIND_S = 3.0  # so long a run goes on behind its failure, for the chart
 
 
 class Stage:
-    """A program on its PLC, which is cold at the beginning of every run."""
+    """A program on its PLC, which is cold at the beginning of every run. A project's system block comes with it; the scan is the exercise's."""
 
-    def __init__(self, exercise: Exercise, program: Program):
+    def __init__(self, exercise: Exercise, program: Program, settings: Project | None = None):
         self.exercise, self.program = exercise, program
+        self.download = program if settings is None else replace(settings, files={"": program.source}, scan_ms=None, passwords=None)
         self.runs = 0
         self.simulated_s = 0.0
         self._cold: dict[float, tuple[Plc, dict]] = {}  # by the length of a scan
@@ -38,7 +39,7 @@ class Stage:
         scan_ms = scenario.scan_ms or self.exercise.scan_ms
         if scan_ms not in self._cold:
             plc = Plc(self.program.model, scan_ms=scan_ms)
-            plc.load(self.program)
+            plc.load(self.download)
             self._cold[scan_ms] = plc, plc.snapshot()
         plc, cold = self._cold[scan_ms]
         plc.restore(cold)
@@ -88,10 +89,11 @@ def grade(
     written = program if isinstance(program, Program) else Project.of(program)
     source = written.source if isinstance(written, Program) else "\n".join(written.files.values())
     name = "" if isinstance(written, Program) else written.name
+    settings = None if isinstance(written, Program) or (written.system is None and written.io is None) else written
     model = written.model.name if isinstance(written, Program) else model or written.model or exercise.models[0]
     if model not in exercise.models:
         raise EcsimError(f"the exercise {exercise.name} is for {' and '.join(exercise.models)}, not for {model}")
-    report = Report(exercise.name, exercise.title, model, name, source, [], task=exercise)
+    report = Report(exercise.name, exercise.title, model, name, source, [], task=exercise, settings=settings)
     try:
         compiled = written if isinstance(written, Program) else written.compile(model)
     except ProgramError as error:
@@ -100,7 +102,7 @@ def grade(
         report.verdicts = untried(exercise)
         return report
     report.compiled = compiled
-    stage = Stage(exercise, compiled)
+    stage = Stage(exercise, compiled, settings)
     tried, broken, report.notes = judge(stage, runs_of(exercise, more, seed))
     if not report.notes:
         shorten(stage, broken)
@@ -242,10 +244,10 @@ class Replay:
         return f"<Replay: {self.seconds:.2f} s before {self.failure.second:.3f} s of {self.failure.scenario}>"
 
 
-def replay(exercise: Exercise, program: Program, failure: Failure, seconds: float = 2.0) -> Replay:
-    """Run a failing scenario again, up to `seconds` before its failure."""
+def replay(exercise: Exercise, program: Program, failure: Failure, seconds: float = 2.0, settings: Project | None = None) -> Replay:
+    """Run a failing scenario again, with the settings that the program came with, up to `seconds` before its failure."""
     scenario = next(one for one in exercise.scenarios if one.name == failure.scenario)
-    run = Stage(exercise, program).begin(scenario, failure.choices)
+    run = Stage(exercise, program, settings).begin(scenario, failure.choices)
     start = max(0, failure.scan - round(seconds / run.period_s))
     run.to(start)
     plant = Operated(run)

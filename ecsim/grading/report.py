@@ -10,6 +10,7 @@ from .chart import Chart
 
 if TYPE_CHECKING:
     from ..assembler import Program
+    from ..project import Project
     from .exercise import Exercise
     from .grade import Replay
 
@@ -67,6 +68,7 @@ class Report:
     hint: str = ""
     task: "Exercise | None" = field(default=None, repr=False, compare=False)
     compiled: "Program | None" = field(default=None, repr=False, compare=False)
+    settings: "Project | None" = field(default=None, repr=False, compare=False)  # what came with the program, if anything
 
     @property
     def passed(self) -> bool:
@@ -106,7 +108,7 @@ class Report:
         failure = failures[0] if rule is None else rule if isinstance(rule, Failure) else self[rule].failure
         if failure is None:
             raise EcsimError(f"the rule {rule!r} was not broken; broken are {', '.join(verdict.rule for verdict in self.failed)}")
-        return replay(self.task, self.compiled, failure, seconds)
+        return replay(self.task, self.compiled, failure, seconds, self.settings)
 
     # -- as data, as text, as a page ----------------------------------------------------------------------------
 

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import EcsimError, ProgramError
-from ..project import Project
+from ..project import SETTINGS, Project
 from .exercise import Exercise, find_exercise
 from .grade import grade, untried
 from .report import Report
@@ -42,8 +42,8 @@ class Submission:
 
     @classmethod
     def read(cls, path: Path) -> "Submission":
-        """A file, or a folder of *.il files. A file of more than 10 MB is not read to its end."""
-        paths = sorted(path.glob("*.il")) if path.is_dir() else [path]
+        """A file, or a project folder: its *.il files and plc.toml. A file of more than 10 MB is not read to its end."""
+        paths = [*sorted(path.glob("*.il")), *path.glob(SETTINGS)] if path.is_dir() else [path]
         files = {}
         for one in paths:
             try:
@@ -55,7 +55,7 @@ class Submission:
 
     def texts(self, limits: Limits) -> dict[str, str]:
         """Its files as text; raises EcsimError in words for its author."""
-        if not self.files:
+        if not self.files.keys() - {SETTINGS}:
             raise EcsimError("There is no .il file.")
         size = sum(map(len, self.files.values()))
         if size > limits.text_bytes:
@@ -158,7 +158,7 @@ def serve(place: str) -> None:
 def _graded(exercise: Exercise, request: dict[str, Any]) -> dict[str, Any]:
     """The report as data, or the reason why there is none."""
     try:
-        report = grade(exercise, Project(request["files"], request["name"]), request["model"])
+        report = grade(exercise, Project.spelled(request["files"], request["name"]), request["model"])
         if request["hints"]:
             from .hints import hint
 

@@ -227,3 +227,22 @@ def test_a_wrong_use_is_told_in_words(arguments, words, capsys, tmp_path, monkey
     monkeypatch.chdir(tmp_path)
     assert main(arguments) == 2
     assert words in capsys.readouterr().err
+
+
+def test_a_project_folder_is_graded_with_its_system_block(tmp_path, conveyor, judge):
+    """The program starts only with what its data block holds; the scan stays the exercise's."""
+    project = tmp_path / "anna"
+    project.mkdir()
+    (project / "main.il").write_text(conveyor.solution.replace("LD   Start", "LD   Start\nAND= D7 1"))
+    (project / "plc.toml").write_text('model = "EC20"\nscan_ms = 500\nio = [[24, 16]]\ninput_filter_ms = 20\n[data_block]\nD7 = 1\n')
+    assert judge.grade(Submission.read(project)).passed
+    assert conveyor.grade(project).passed
+    (project / "plc.toml").write_text('model = "EC20"\ninput_filter_ms = 20\n')
+    report = conveyor.grade(project)
+    assert not report.passed
+    assert report.replay().plc.system.input_filter_ms == 20
+    assert judge.grade(Submission.read(project)).marks == report.marks
+    (project / "plc.toml").write_text('model = "EC20"\ninput_filter_ms = "long"\n')
+    assert "plc.toml" in judge.grade(Submission.read(project)).reason
+    with pytest.raises(EcsimError, match=r"plc\.toml"):
+        conveyor.grade(project)

@@ -4,14 +4,14 @@ import pytest
 from ecsim_exercises.plant import Point
 
 from ecsim import EcsimError
-from ecsim.grading import Between, Do, Exercise, Never, Scenario, Within
-from ecsim.grading.edits import edits
-from ecsim.grading.hints import hint
+from ecsim.grading import Between, Do, Exercise, Never, Scenario, Within, find_exercise
+from ecsim.grading.edits import additions, edits
+from ecsim.grading.hints import ALL, SOME, hint, suspect
 from ecsim.grading.mutation import mutate
 
 
-def news(text, inserting=False):
-    return [edit.new for edit in edits(text, inserting)]
+def news(text):
+    return [edit.new for edit in edits(text)]
 
 
 def test_a_contact_is_turned_exchanged_and_left_out():
@@ -42,9 +42,9 @@ def test_a_name_gives_way_to_its_neighbours():
 
 
 def test_additions_are_conditions_and_coils_more():
-    found = news("LD X0\nAND X1\nOUT Y0\nOUT Y1", inserting=True)
-    assert "AND X1\nANI X0" in found
-    assert "OUT Y0\nRST Y1" in found
+    found = {edit.new for edit in additions("LD X0\nAND X1\nOUT Y0\nTON T0 0\nLD= D0 7\nOUT Y1", ["X0"], ["Y1"], ["D0"])}
+    assert {"AND X1\nANI X0", "AND X1\nORI X0", "AND X1\nED", "AND X1\nAND> D0 7", "LD X0\nAND= D0 0"} <= found
+    assert {"OUT Y0\nRST Y1", "OUT Y0\nSET Y1", "TON T0 7"} <= found
 
 
 @pytest.fixture
@@ -138,3 +138,30 @@ def test_a_rule_cannot_ask_for_the_steps_of_a_program_without(lamp):
     odd = Never("odd", "Odd", "Step == 'S1'")
     with pytest.raises(EcsimError, match="no lane"):
         lamp(odd).grade("LD X0\nOUT Y0")
+
+
+@pytest.mark.parametrize(
+    ("name", "mistake", "coils", "mends"),
+    [
+        ("motor", "overload_forgotten", {"RunR"}, ALL),  # AND Healthy is missing in the network of RunR
+        ("motor", "no_hold", {"RunF", "RunR"}, SOME),  # OR RunF and OR RunR are missing in their networks: each mends its half
+        ("star_delta", "no_hold", {"Line"}, ALL),  # OR Line
+        ("star_delta", "overload_forgotten", {"Line"}, ALL),  # AND Healthy
+        ("conveyor", "gate_stays_down", {"Gate"}, ALL),  # SET where OUT should be
+    ],
+)
+def test_a_hint_finds_the_network_of_a_mistake(name, mistake, coils, mends):
+    exercise = find_exercise(name)
+    report = exercise.grade(exercise.mistakes[mistake][0])
+    seen = []
+    found = suspect(exercise, report, lambda done, of: seen.append((done, of)))
+    network = next(unit for unit in report.compiled.units if unit.name == found.unit).networks[found.network]
+    assert report.compiled.main.instructions[network.end - 1].written[0] in coils
+    assert found.mends == mends
+    assert seen == sorted(seen)
+    assert 0 < seen[-1][0] <= seen[-1][1]
+
+
+def test_a_program_that_does_nothing_has_a_hint(lamp):
+    exercise = lamp(FOLLOWS, LOCKED, DARK)
+    assert "does nothing yet" in hint(exercise, exercise.grade(""))
