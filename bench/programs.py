@@ -12,6 +12,7 @@ for a machine but takes the same time. A block is 35 steps: 340 of them are what
 from __future__ import annotations
 
 import random
+import re
 from dataclasses import dataclass
 
 INPUTS = 256
@@ -98,6 +99,16 @@ def flows() -> list[str]:
             ]
         lines.append("RET")
     return lines
+
+
+_FX_NAMES = {"TON": "OUT", "CTU": "OUT", "SM0": "M8000", "SM1": "M8002"}
+_WHOLE = re.compile(r"-?\d+")
+
+
+def in_fx(text: str) -> str:
+    """The same work as a program of the FX family: coils of timers and counters, constants with their K."""
+    lines = [[_FX_NAMES.get(word, word) for word in line.split()] for line in text.split("\n")]
+    return "\n".join(" ".join(f"K{word}" if _WHOLE.fullmatch(word) else word for word in line) for line in lines)
 
 
 LOGIC = Workload("LOGIC", "\n".join(latch_rungs(2000)), inputs_on=0.5)

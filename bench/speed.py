@@ -29,7 +29,7 @@ from typing import Any
 
 import peers
 from peers import PEERS, Contender, TupleLoop, timed
-from programs import LARGEST, WORKLOADS, Workload, x
+from programs import LARGEST, WORKLOADS, Workload, in_fx, x
 from prototype import Prototype
 
 import ecsim
@@ -69,6 +69,15 @@ class Stepping(Compiled):
         super().__init__(text)
         assert self.plc.engine == "compiled"
         self.plc.engine = "stepping"
+
+
+class CompiledFx(Compiled):
+    """The compiled engine with the same work as a program of the FX family."""
+
+    def __init__(self, text: str) -> None:
+        self.plc = ecsim.Plc("H2U", scan_ms=SCAN_MS, input_filter_ms=0)
+        self.plc.load(in_fx(text))
+        self.plc.run()
 
 
 class Local:
@@ -161,6 +170,7 @@ def contenders(server: Server | None) -> list[Row]:
     own = {
         "yardstick: generated Python, nothing around it": Prototype,
         "**ecsim, compiled engine**": Compiled,
+        "the same for an H2U": CompiledFx,
         "**ecsim, stepping engine**, nothing recorded": Stepping,
         "a loop over tuples": TupleLoop,
     }

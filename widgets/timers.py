@@ -15,7 +15,15 @@ KINDS = {
     "HCNT": "counter",
 }
 # Coils that are one of these by the number of their device.
-LIKE = {"FX:OUT T": "TON", "FX:OUT T246": "TONR", "FX:OUT C": "CTU", "FX:OUT C200": "DCNT", "FX:OUT C235": "HCNT"}
+LIKE = {
+    "FX:OUT T": "TON",
+    "FX:OUT T D": "TON",
+    "FX:OUT T246": "TONR",
+    "FX:OUT T246 D": "TONR",
+    "FX:OUT C": "CTU",
+    "FX:OUT C200": "DCNT",
+    "FX:OUT C235": "HCNT",
+}
 BASES = {100_000: "100 ms", 10_000: "10 ms", 1_000: "1 ms"}
 
 

@@ -12,26 +12,31 @@ class Steps:
     def __init__(self, memory: Memory):
         self.memory = memory
         self.ending: set[int] = set()  # generated code adds to it
+        relays = memory.model.relays
+        self.asked = relays["monitor steps"], relays["monitor annunciators"]
+        self.shown = relays["step active"], relays["annunciator"]
 
     def end(self) -> None:
         """The program has ended."""
-        lists, model = self.memory.lists, self.memory.model
-        steps = lists["S"]
-        if self.ending:
-            for number in self.ending:
+        lists, ending = self.memory.lists, self.ending
+        if ending:
+            steps = lists["S"]
+            for number in ending:
                 steps[number] = False
-            self.ending.clear()
-        relays, registers = lists[model.special_bits], lists[model.special_words]
-        if relays[model.relays["monitor steps"]]:
-            on = [number for number in range(ANNUNCIATORS) if steps[number]]
-            relays[model.relays["step active"]] = bool(on)
+            ending.clear()
+        relays = lists[self.memory.model.special_bits]
+        if relays[self.asked[0]] or relays[self.asked[1]] or relays[self.shown[0]] or relays[self.shown[1]]:
+            self._monitor(relays)
+
+    def _monitor(self, relays: list[bool]) -> None:
+        model, steps = self.memory.model, self.memory.lists["S"]
+        registers = self.memory.lists[model.special_words]
+        on = [number for number in range(ANNUNCIATORS) if steps[number]]
+        if relays[self.asked[0]]:
             first = model.registers["active steps"]
             registers[first : first + LISTED] = (on + [0] * LISTED)[:LISTED]
-        else:
-            relays[model.relays["step active"]] = False
-        if relays[model.relays["monitor annunciators"]]:
-            lowest = next((number for number in range(ANNUNCIATORS, len(steps)) if steps[number]), 0)
-            relays[model.relays["annunciator"]] = bool(lowest)
+        relays[self.shown[0]] = relays[self.asked[0]] and bool(on)
+        lowest = next((number for number in range(ANNUNCIATORS, len(steps)) if steps[number]), 0)
+        if relays[self.asked[1]]:
             registers[model.registers["annunciator"]] = lowest
-        else:
-            relays[model.relays["annunciator"]] = False
+        relays[self.shown[1]] = relays[self.asked[1]] and bool(lowest)

@@ -45,12 +45,24 @@ def _preset(device, preset):
     return None
 
 
-@always("FX:OUT T", "D:TIMER S:INT[const D]! state", steps=3, section="3.5", models=FX, cleared=True, check=_preset)
-def timer_coil(flow, timer, preset, state):
-    """On-delay: counts while the flow is ON, contact ON at the preset, where it stops; flow OFF clears both.
+@always("FX:OUT T", "D:TIMER S:INT[const]!", steps=3, section="3.5", models=FX, cleared=True, check=_preset)
+def timer_coil(flow, timer, preset):
+    """On-delay: counts while the flow is ON, contact ON at the preset, where it stops; flow OFF clears both."""
+    if flow:
+        if timer.now >= timer.due:
+            timer.begin()
+        if timer.value >= preset:
+            timer.value = preset
+            timer.contact = True
+        timer.watch(preset, None)
+    else:
+        timer.contact = False
+        timer.value = timer.due = 0
 
-    A preset in a register is read when the timer starts.
-    """
+
+@always("FX:OUT T D", "D:TIMER S:INT[D]! state", steps=3, section="3.5", models=FX, cleared=True)
+def timer_coil_with_register(flow, timer, preset, state):
+    """The same with the preset in a register, which is read when the timer starts."""
     if flow:
         if not (timer.due and state.was):
             state.was = preset
@@ -65,12 +77,24 @@ def timer_coil(flow, timer, preset, state):
         timer.value = timer.due = 0
 
 
-@always("FX:OUT T246", "D:TIMER S:INT[const D]! state", steps=3, section="3.5", models=FX, check=_preset)
-def retentive_timer_coil(flow, timer, preset, state):
-    """Retentive on-delay: counts while the flow is ON, contact ON at the preset, where it stops; flow OFF keeps both, RST clears them.
+@always("FX:OUT T246", "D:TIMER S:INT[const]!", steps=3, section="3.5", models=FX, check=_preset)
+def retentive_timer_coil(flow, timer, preset):
+    """Retentive on-delay: counts while the flow is ON, contact ON at the preset, where it stops; flow OFF keeps both, RST clears them."""
+    if flow:
+        if timer.now >= timer.due:
+            timer.resume()
+        timer.rest = timer.base - timer.due + timer.now
+        if timer.value >= preset:
+            timer.value = preset
+            timer.contact = True
+        timer.watch(preset, None)
+    else:
+        timer.due = 0
 
-    A preset in a register is read when the timer starts from 0.
-    """
+
+@always("FX:OUT T246 D", "D:TIMER S:INT[D]! state", steps=3, section="3.5", models=FX)
+def retentive_timer_coil_with_register(flow, timer, preset, state):
+    """The same with the preset in a register, which is read when the timer starts from 0."""
     if flow:
         if not (state.was and timer.value):
             state.was = preset

@@ -26,8 +26,8 @@ H2U: dict[str, str | By] = {
     **{name: f"FX:{name}" for name in "LDP LDF ANDP ANDF ORP ORF PLS PLF MC MCR END I".split()},
     "OUT": By(
         "OUT",
-        ("T", 0, 245, "FX:OUT T"),
-        ("T", 246, 255, "FX:OUT T246"),
+        ("T", 0, 245, By("FX:OUT T", ("D", 0, 8255, "FX:OUT T D"))),
+        ("T", 246, 255, By("FX:OUT T246", ("D", 0, 8255, "FX:OUT T246 D"))),
         ("C", 0, 199, "FX:OUT C"),
         ("C", 200, 234, "FX:OUT C200"),
         ("C", 235, 255, "FX:OUT C235"),
@@ -121,7 +121,6 @@ H2U: dict[str, str | By] = {
     "FLT": "FX:FLT",
     "DFLT": "FX:DFLT",
     # FNC 50 to 59: high-speed processing
-    "REFF": "FX:REFF",
     "REF": "REF",
     "REFF": "FX:REFF",
     "MTR": "FX:MTR",
@@ -260,7 +259,6 @@ REFERENCE = frozenset(
         ),
     ]
 )
-
 
 # Where what an instruction does is known from; most of what is in neither is general knowledge of the family.
 STATED = frozenset("LD LDP LDF ANB ORB MPS OUT RST MC P I STL RET CJ IRET EI FEND WDT MOV ZRST HSCS IST FROM RS".split())

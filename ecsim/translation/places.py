@@ -18,7 +18,7 @@ RELAYS = (
 REGISTERS = ("base frequency", "ramp time")
 DOUBLES = ("top frequency",)  # their first number is that of the pair
 RUNS = {"capture": 6}
-RETENTIVE = "FX:OUT T246"
+RETENTIVE = frozenset({"FX:OUT T246", "FX:OUT T246 D"})
 
 
 class Places:
@@ -118,7 +118,7 @@ class Places:
         fitting = [range(first, last + 1) for first, last, unit in self.target.timer_bases if unit == base]
         coil = self.target.spelling.get("OUT")
         if isinstance(coil, By):  # the number tells whether a timer keeps its value
-            fitting = [numbers for numbers in fitting if (coil.of("T", numbers.start) == RETENTIVE) is keeps]
+            fitting = [numbers for numbers in fitting if (coil.of("T", numbers.start).usual in RETENTIVE) is keeps]
         wanted = [device.number] if any(device.number in numbers for numbers in fitting) else []
         wanted += [number for numbers in fitting for number in numbers]
         others = {number for area, number in self.used if area == "T"}
@@ -130,7 +130,7 @@ class Places:
 
     def _retentive(self, device: Device) -> bool:
         coils = [i.mnemonic for i in self.program.instructions if i.definition.form == "always" and device in i.operands[:1]]
-        return any(mnemonic in ("TONR", RETENTIVE) for mnemonic in coils)
+        return any(mnemonic in {"TONR", *RETENTIVE} for mnemonic in coils)
 
     def _step(self, device: Device) -> None:
         """Its own number where that means the same, else a free one: of an initial step one of those, of others none that tells of faults."""

@@ -14,7 +14,8 @@ from .to_fx import IN_PLACE, INPUTS, NAMES, SWAPPED
 _BACK = {f"FX:{name}": key for key, name in NAMES.items() if name != "OUT"}
 KEYS = {
     **{key: name for key, name in _BACK.items() if key != "FX:DPLSY"},
-    "FX:OUT T": "TON", "FX:OUT T246": "TONR", "FX:OUT C": "CTU", "FX:OUT C200": "DCNT", "FX:OUT C235": "HCNT", "FX:SET": "SET",
+    "FX:OUT T": "TON", "FX:OUT T D": "TON", "FX:OUT T246": "TONR", "FX:OUT T246 D": "TONR",
+    "FX:OUT C": "CTU", "FX:OUT C200": "DCNT", "FX:OUT C235": "HCNT", "FX:SET": "SET",
     "FX:PLSY": "PLSY", "FX:DPLSY": "PLSY",
 }  # fmt: skip
 NOTES = {
@@ -22,7 +23,7 @@ NOTES = {
         ("FX:ADD", "FX:SUB", "FX:DADD", "FX:DSUB"),
         "{name}: a result beyond the range goes on from the other end of the range there, from 0 here",
     ),
-    **dict.fromkeys(("FX:OUT T", "FX:OUT T246"), "timers go on beyond their preset there"),
+    **dict.fromkeys(("FX:OUT T", "FX:OUT T D", "FX:OUT T246", "FX:OUT T246 D"), "timers go on beyond their preset there"),
     "STL": "in the scan of a transition the step that is left is OFF there when the one that begins is ON",
     "FX:SEGD": "SEG clears the upper eight bits of its result",
 }
