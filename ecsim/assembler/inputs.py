@@ -36,7 +36,7 @@ def _uses(units: list[Unit], model: Model) -> Iterator[tuple[int, str, int]]:
             yield model.edge_events[unit.event][0], f"the interrupt event {unit.event}", unit.line
         for instruction in unit.instructions:
             if instruction.definition.occupies:
-                named = " ".join((instruction.mnemonic, instruction.written[0]))
+                named = " ".join((instruction.spelled or instruction.mnemonic, instruction.written[0]))
                 for number in instruction.definition.occupies(model, instruction.operands):
                     yield number, named, instruction.line
             if capture is not None:
