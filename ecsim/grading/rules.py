@@ -5,7 +5,7 @@ broken. It is `tried` when the situation that it speaks of has come up; what was
 """
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from ..errors import EcsimError
@@ -34,8 +34,9 @@ class _Rule:
     name: str  # one word with hyphens: "discharge-closed"
     words: str  # a sentence: "The drain is never open while material is added"
 
-    marks = 1.0
-    scenarios = ()
+    expected: str = field(default="", kw_only=True)  # the sentence that is shown when it is broken; made from the conditions unless given
+    scenarios: tuple[str, ...] = field(default=(), kw_only=True)  # those that it judges; all unless given
+    marks: float = field(default=1.0, kw_only=True)
 
     @property
     def conditions(self) -> tuple[str, ...]:
@@ -75,9 +76,6 @@ class Never(_Rule):
     condition: str
     grace: int = 0
     needs: str = ""
-    expected: str = ""
-    scenarios: tuple[str, ...] = ()
-    marks: float = 1.0
 
     @property
     def conditions(self) -> tuple[str, ...]:
@@ -110,9 +108,6 @@ class Within(_Rule):
     then: str
     seconds: float
     unless: str = ""
-    expected: str = ""
-    scenarios: tuple[str, ...] = ()
-    marks: float = 1.0
 
     @property
     def conditions(self) -> tuple[str, ...]:
@@ -145,9 +140,6 @@ class Lasts(_Rule):
     least: float = 0.0
     most: float | None = None
     unless: str = ""
-    expected: str = ""
-    scenarios: tuple[str, ...] = ()
-    marks: float = 1.0
 
     @property
     def conditions(self) -> tuple[str, ...]:
@@ -183,9 +175,6 @@ class Order(_Rule):
 
     events: tuple[str, ...]
     restart: str = ""
-    expected: str = ""
-    scenarios: tuple[str, ...] = ()
-    marks: float = 1.0
 
     @property
     def conditions(self) -> tuple[str, ...]:
@@ -225,9 +214,6 @@ class Count(_Rule):
     least: int = 0
     most: int | None = None
     within: str = ""
-    expected: str = ""
-    scenarios: tuple[str, ...] = ()
-    marks: float = 1.0
 
     @property
     def conditions(self) -> tuple[str, ...]:
@@ -268,9 +254,6 @@ class Custom(_Rule):
     look: Callable[[Trace], Iterable[tuple[int, int, str]]]
     watch: tuple[str, ...]
     needs: str = ""
-    expected: str = ""
-    scenarios: tuple[str, ...] = ()
-    marks: float = 1.0
 
     @property
     def conditions(self) -> tuple[str, ...]:

@@ -24,8 +24,8 @@ def machine(chosen):
 def held(when, fault, seconds):
     """A cylinder stays where it is for some seconds."""
     return [
-        Do(when=when, act=lambda plc, plant: plant.fail(fault)),
-        Do(after=seconds, act=lambda plc, plant: plant.fail(fault, on=False)),
+        Do(when=when, fail=fault),
+        Do(after=seconds, mend=fault),
     ]
 
 
@@ -76,8 +76,8 @@ SCENARIOS = (
         choices={"seconds": Between(1.0, 6.0, usual=3.0), "after": Between(0.2, 0.8, usual=0.4)},
         script=lambda chosen: [
             Do(when="turned >= 2 and Table and not Station"),
-            Do(after=chosen.after, act=lambda plc, plant: plant.fail("table jams")),
-            Do(after=chosen.seconds, act=lambda plc, plant: plant.fail("table jams", on=False)),
+            Do(after=chosen.after, fail="table jams"),
+            Do(after=chosen.seconds, mend="table jams"),
         ],
         until="turned >= 7",
         draws=1,

@@ -50,7 +50,7 @@ SCENARIOS = (
         "The button sticks: the cars must still have their time",
         seconds=120,
         plant=lambda chosen: Crossing((5.0, 40.0, 80.0), ()),
-        script=[Do(at=2.0, act=lambda plc, plant: plant.fail("button sticks"))],
+        script=[Do(at=2.0, fail="button sticks")],
         draws=0,
     ),
 )

@@ -48,8 +48,8 @@ SCENARIOS = (
         script=lambda chosen: [
             press(at=1.0),
             press(when="Open", after=2.0),
-            Do(when="MoveDown", after=chosen.after, act=lambda plc, plant: plant.fail("child")),
-            Do(after=chosen.stays, act=lambda plc, plant: plant.fail("child", on=False)),
+            Do(when="MoveDown", after=chosen.after, fail="child"),
+            Do(after=chosen.stays, mend="child"),
         ],
     ),
     Scenario(
@@ -59,9 +59,9 @@ SCENARIOS = (
         choices={"comes": Between(1.0, 18.0, usual=12.0), "stays": Between(2.0, 10.0, usual=4.0)},
         script=lambda chosen: [
             press(at=1.0),
-            Do(when="Open", after=chosen.comes, act=lambda plc, plant: plant.fail("child")),
+            Do(when="Open", after=chosen.comes, fail="child"),
             press(after=1.0),
-            Do(after=chosen.stays, act=lambda plc, plant: plant.fail("child", on=False)),
+            Do(after=chosen.stays, mend="child"),
         ],
     ),
 )

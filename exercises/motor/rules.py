@@ -85,8 +85,8 @@ SCENARIOS = (
         script=lambda chosen: [
             READY,
             Do({chosen.way: 1}, at=1.0, hold=PRESS_S),
-            Do(after=chosen.after, act=lambda plc, plant: plant.fail("jammed")),
-            Do(when="not Healthy", after=3.0, act=lambda plc, plant: plant.fail("jammed", on=False)),
+            Do(after=chosen.after, fail="jammed"),
+            Do(when="not Healthy", after=3.0, mend="jammed"),
             Do(when="Healthy", after=4.0, set={chosen.way: 1}, hold=PRESS_S),
         ],
         draws=2,
@@ -98,7 +98,7 @@ SCENARIOS = (
         script=[
             READY,
             Do({"Reverse": 1}, at=1.0, hold=PRESS_S),
-            Do(after=2.0, act=lambda plc, plant: plant.fail("jammed")),
+            Do(after=2.0, fail="jammed"),
         ],
         draws=0,
     ),

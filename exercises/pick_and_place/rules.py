@@ -22,7 +22,7 @@ def arm(chosen):
 
 def fault(name, on=True, **when):
     """A fault of the machine, switched in or out."""
-    return Do(act=lambda plc, plant: plant.fail(name, on), **when)
+    return Do(fail=name, **when) if on else Do(mend=name, **when)
 
 
 SCENARIOS = (

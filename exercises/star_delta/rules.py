@@ -51,8 +51,8 @@ SCENARIOS = (
         script=lambda chosen: [
             READY,
             Do({"Start": 1}, at=1.0, hold=PRESS_S),
-            Do(after=chosen.after, act=lambda plc, plant: plant.fail("jammed")),
-            Do(when="not Healthy", after=2.0, act=lambda plc, plant: plant.fail("jammed", on=False)),
+            Do(after=chosen.after, fail="jammed"),
+            Do(when="not Healthy", after=2.0, mend="jammed"),
             Do(when="Healthy", after=4.0, set={"Start": 1}, hold=PRESS_S),
         ],
         draws=2,
