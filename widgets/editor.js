@@ -2,7 +2,9 @@
 // text lies above it, line for line. The kernel answers what was typed with problems, completions and operands.
 
 const TYPED_MS = 120; // how long typing must rest before the kernel is asked
+const TYPED_PER_MS = 200; // a long text is asked about more seldom: a millisecond more for so many letters
 const JOIN_MS = 600; // letters that follow one another so fast are undone together
+const [LINE_EM, SPARE_LINES] = [1.5, 40]; // the height of a line; lines that are drawn above and below what is in sight
 
 // Of two lists of lines how many are the same at the begin and at the end.
 function sameEnds(before, after) {
@@ -66,6 +68,7 @@ panels.editor = (place, layout, page, view) => {
   let lines = [];
   let opens = []; // what each line leaves open
   let marked = new Map(); // line -> its marks
+  let drawn = [0, 0]; // the first line that is drawn, and the one behind the last
 
   // -- the text and its colours --------------------------------------------------------------------------------------
 
@@ -73,52 +76,57 @@ panels.editor = (place, layout, page, view) => {
     const current = area.value.split("\n");
     const [head, tail] = force ? [0, 0] : sameEnds(lines, current);
     const end = lines.length - tail;
-    for (let gone = head; gone < end; gone += 1) over.children[head].remove();
-    const fresh = [];
     let open = head ? opens[head - 1] : undefined;
     const left = [];
-    const put = (line) => {
-      const { tokens, open: next } = ilTokens(current[line], open);
-      open = next;
-      left.push(next);
-      const node = document.createElement("div");
-      node.className = "ln";
-      node.innerHTML = lineMarkup(tokens, marked.get(line + 1) ?? []) || " ";
-      return node;
-    };
-    for (let line = head; line < current.length - tail; line += 1) fresh.push(put(line));
-    const before = over.children[head] ?? null;
-    for (const node of fresh) over.insertBefore(node, before);
+    const leave = (line) => (open = ilTokens(current[line], open).open);
+    for (let line = head; line < current.length - tail; line += 1) left.push(leave(line));
     // A comment or table that is opened or closed changes the lines below it.
     let line = current.length - tail;
     const same = (a = IL_BEGIN, b = IL_BEGIN) => a.comment === b.comment && a.table === b.table;
     let former = opens[end - 1];
     opens.splice(head, end - head, ...left);
-    while (line < current.length && !same(former, open)) {
+    for (; line < current.length && !same(former, open); line += 1) {
       former = opens[line];
-      left.length = 0;
-      over.replaceChild(put(line), over.children[line]);
-      opens[line] = open;
-      line += 1;
+      opens[line] = leave(line);
     }
     lines = current;
-    count();
+    const longest = lines.reduce((most, each) => Math.max(most, each.includes("\t") ? 4 * each.length : each.length), 0);
+    over.parentElement.style.minWidth = `${longest + 2}ch`;
+    draw();
   }
-  function count() {
-    while (gutter.children.length > lines.length) gutter.lastChild.remove();
-    while (gutter.children.length < lines.length) gutter.insertAdjacentHTML("beforeend", `<div class="no">${gutter.children.length + 1}</div>`);
+  // Of a long text only what is in sight is drawn, and some lines around it.
+  const lineHeight = () => parseFloat(getComputedStyle(over).lineHeight) || 19.5;
+  function draw() {
+    const high = lineHeight();
+    const first = Math.max(0, Math.floor(sheet.scrollTop / high) - SPARE_LINES);
+    const last = Math.min(lines.length, first + Math.ceil((sheet.clientHeight || 560) / high) + 2 * SPARE_LINES);
+    const [numbers, texts] = [[], []];
+    for (let line = first; line < last; line += 1) {
+      const marks = marked.get(line + 1) ?? [];
+      numbers.push(`<div class="no"${marks.length ? " data-bad" : ""}>${line + 1}</div>`);
+      texts.push(`<div class="ln">${lineMarkup(ilTokens(lines[line], line ? opens[line - 1] : undefined).tokens, marks) || " "}</div>`);
+    }
+    gutter.innerHTML = numbers.join("");
+    over.innerHTML = texts.join("");
+    drawn = [first, last];
+    const [above, all] = [LINE_EM * first, LINE_EM * (lines.length + 1)];
+    Object.assign(over.style, { paddingTop: `${above}em`, height: `max(9em, ${all}em)` });
+    Object.assign(gutter.style, { paddingTop: `calc(8px + ${above}em)`, minHeight: `calc(16px + ${all}em)` });
   }
+  function sight(line) {
+    const [high, top] = [lineHeight(), over.parentElement.offsetTop + line * lineHeight()];
+    if (top < sheet.scrollTop) sheet.scrollTop = top;
+    else if (top + high > sheet.scrollTop + sheet.clientHeight) sheet.scrollTop = top + high - sheet.clientHeight;
+  }
+  sheet.addEventListener("scroll", () => {
+    const high = lineHeight();
+    const [first, last] = [Math.floor(sheet.scrollTop / high), Math.ceil((sheet.scrollTop + sheet.clientHeight) / high)];
+    if (first < drawn[0] || Math.min(last, lines.length) > drawn[1]) draw();
+  });
   function mark(list) {
-    const before = marked;
     marked = new Map();
     for (const one of list) marked.set(one[0], [...(marked.get(one[0]) ?? []), one]);
-    for (const line of new Set([...before.keys(), ...marked.keys()])) {
-      const node = over.children[line - 1];
-      if (!node) continue;
-      const { tokens } = ilTokens(lines[line - 1], line > 1 ? opens[line - 2] : undefined);
-      node.innerHTML = lineMarkup(tokens, marked.get(line) ?? []) || " ";
-      set(gutter.children[line - 1], "data-bad", marked.has(line) ? "" : null);
-    }
+    draw();
     set(area, "aria-invalid", list.length ? "true" : null);
     problems.hidden = !list.length;
     problems.innerHTML = list
@@ -130,7 +138,7 @@ panels.editor = (place, layout, page, view) => {
     const at = lines.slice(0, line - 1).reduce((sum, text) => sum + text.length + 1, 0) + column - 1;
     area.focus({ preventScroll: true });
     area.setSelectionRange(at, at);
-    over.children[line - 1]?.scrollIntoView({ block: "nearest" });
+    sight(line - 1);
   }
   const dirty = () => area.value !== source;
   function tell() {
@@ -161,8 +169,8 @@ panels.editor = (place, layout, page, view) => {
     last = { kind: "", when: 0 };
     area.value = now.text;
     area.setSelectionRange(...now.at);
-    over.children[now.text.slice(0, now.at[0]).split("\n").length - 1]?.scrollIntoView({ block: "nearest" });
     typed();
+    sight(now.text.slice(0, now.at[0]).split("\n").length - 1);
   }
 
   // -- talking with the kernel ---------------------------------------------------------------------------------------
@@ -174,7 +182,7 @@ panels.editor = (place, layout, page, view) => {
     close();
     for (const other of page.views) if (other.editor && other !== view) other.editor.follow(area.value);
     clearTimeout(resting);
-    resting = setTimeout(ask, TYPED_MS);
+    resting = setTimeout(ask, Math.max(TYPED_MS, area.value.length / TYPED_PER_MS));
   }
   function ask() {
     clearTimeout(resting);
@@ -212,8 +220,8 @@ panels.editor = (place, layout, page, view) => {
     offers.innerHTML = offered.map(([text, kind, about], at) => `<li role="option" id="${offersId}-${at}" data-at="${at}" aria-selected="false"><span class="${kind}">${escaped(text)}</span><span class="dim">${escaped(about)}</span></li>`).join("");
     offers.style.left = `${before.length - before.lastIndexOf("\n") - 1}ch`;
     offers.hidden = false;
-    const below = over.children[before.split("\n").length - 1].offsetTop + over.offsetTop;
-    const line = over.firstChild.offsetHeight;
+    const line = lineHeight();
+    const below = (before.split("\n").length - 1) * line;
     const room = sheet.scrollTop + sheet.clientHeight - offers.parentElement.offsetTop - below - line;
     const above = offers.offsetHeight > room && below - offers.offsetHeight >= 0;
     offers.style.top = `${above ? below - offers.offsetHeight : below + line}px`;

@@ -182,3 +182,45 @@ def test_without_its_kernel_the_text_stays_and_cannot_be_downloaded(editor):
     expect(editor["download"]).to_be_disabled()
     editor.page.keyboard.type(" ")
     assert text(editor) == PROGRAM + "LD X1 "
+
+
+TYPE = """async (at) => {
+  const area = document.querySelector('textarea');
+  area.focus();
+  area.setSelectionRange(at, at);
+  for (const sign of 'LD X0') {
+    document.execCommand('insertText', false, sign);
+    await new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
+  }
+}"""
+
+
+def test_a_program_of_12000_steps_is_typed_in_without_delay(bench, make_lab):
+    """The page's own time for a key stroke, from the key to the picture, whatever else the machine does."""
+    Editor._desks.clear()
+    networks = "\n".join(
+        f"LD X{number % 8}\nOR M{number % 900}\nOUT M{number % 1000}\nMOV {number} D{number % 7000}" for number in range(1499)
+    )
+    made = make_lab(networks)
+    assert 11_900 < made.plc.program.steps <= 12_000
+    bench.connect(made.panel("editor"))
+    lines, drawn = made.plc.program.source.count("\n") + 1, bench.page.locator(".editor .ln")
+    assert drawn.count() < 200
+    client = bench.page.context.new_cdp_session(bench.page)
+    client.send("Performance.enable", {"timeDomain": "threadTicks"})
+
+    def spent_ms():
+        return 1000 * next(each["value"] for each in client.send("Performance.getMetrics")["metrics"] if each["name"] == "TaskDuration")
+
+    bench.js("() => { Model.prototype.send = () => {} }")
+    for at in (0, len(networks) // 2, len(networks)):
+        bench.js(TYPE, at)
+        before = spent_ms()
+        bench.js(TYPE, at)
+        assert (spent_ms() - before) / 5 < 50
+    client.detach()
+    bench["text"].press("Control+Home")
+    bench["text"].press("Control+End")
+    expect(bench.page.locator(".editor .no").last).to_have_text(str(lines))  # the end is in sight, with its number
+    assert drawn.last.inner_text().startswith("MOV 1498 D1498")
+    assert drawn.count() < 200
