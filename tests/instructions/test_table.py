@@ -168,6 +168,21 @@ def test_marks_allow_and_forbid_the_index():
     assert [only(text).indexed for text in ("S:INT", "S:INT!", "S:BOOL", "S:BOOL~")] == [True, False, False, True]
 
 
+def test_a_span_may_count_from_device_to_device():
+    spec = operands(">D1:BOOL*{max(d2-d1,0)+1}~ D2:BOOL d1 d2")[0]
+    assert [spec.length({"d1": 5, "d2": 9}), spec.length({"d1": 9, "d2": 5}), spec.length({"d1": 5})] == [5, 1, None]
+
+
+def test_of_a_span_a_kn_string_may_take_the_first_element_alone():
+    assert [only(text).first for text in ("-> D:INT*2'", "-> D:INT*2")] == [True, False]
+    assert only("-> D:INT*2'").span == 2
+
+
+def test_an_operand_may_be_written_now_and_then():
+    spec = operands("S:INT[D]*N? N:INT -> S")[0]
+    assert (spec.maybe, spec.read, spec.written, spec.span) == (True, True, True, "N")
+
+
 def test_a_range_of_a_constant_is_read():
     assert only("S:INT=-3..7").range == (-3, 7)
 
