@@ -286,3 +286,22 @@ def test_a_push_button_is_held_by_a_finger(panels):
     panels.becomes("rig.terminal('X5')", "0")
     assert int(panels.lab("plc['D0']")) >= 3
     expect(button).to_have_attribute("aria-pressed", "false")
+
+
+def test_a_saved_notebook_opened_again_shows_the_last_state(panels, server):
+    """JupyterLab keeps the panels' state in the notebook; another kernel has no lab behind it."""
+    page = panels.page
+    scans, path = panels["scans"].inner_text(), page.evaluate("() => window.jupyterapp.shell.currentWidget.context.path")
+    panels.notebook.command("docmanager:save")
+    page.wait_for_function("() => !window.jupyterapp.shell.currentWidget.context.model.dirty")
+    again = page.context.browser.new_page(viewport={"width": 1280, "height": 1100})
+    try:
+        page.evaluate("() => window.jupyterapp.shell.currentWidget.sessionContext.shutdown()")
+        again.goto(f"{server.address}/lab/tree/{path}?token={server.token}&reset")
+        expect(again.get_by_test_id("chip")).to_have_text("Not connected: the last state", timeout=60_000)
+        expect(again.get_by_test_id("scans")).to_have_text(scans)
+        expect(again.get_by_test_id("step-S20")).to_have_attribute("data-on", "")
+        expect(again.get_by_test_id("ladder").locator(".stamp")).to_have_text(f"last state · scan {scans}")
+        expect(again.get_by_test_id("run")).to_be_disabled()
+    finally:
+        again.close()
