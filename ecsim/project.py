@@ -69,6 +69,10 @@ class Project:
     toml: str = ""  # plc.toml as it was read
     origin: frozenset[Path] = frozenset()  # the .il files that it was read from
 
+    def __post_init__(self):
+        if self.model is None and isinstance(self.files, dict) and len(self.files) == 1:
+            self.model = model_in(str(next(iter(self.files))))
+
     @classmethod
     def of(cls, program: "str | Path | Project") -> "Project":
         """A project from a text, the path of an .il file or of a folder. A one-line string that ends in .il, or names a folder, is a path.
@@ -79,7 +83,7 @@ class Project:
             return program
         if isinstance(program, Path) or _is_path(program):
             path = Path(program)
-            return cls.read(path) if path.is_dir() else cls({path.name: _text(path)}, path.name, model_in(path.name))
+            return cls.read(path) if path.is_dir() else cls({path.name: _text(path)}, path.name)
         if not isinstance(program, str):
             raise EcsimError(f"a program is a text, a path, a Project or a Program, not {type(program).__name__}")
         return cls({"": program})
@@ -159,7 +163,7 @@ class Project:
             message = f"this is no TOML: {str(error).partition(' (at ')[0]}"
             return [Problem(line, column, message, 'write lines like model = "EC20"', source=SETTINGS)]
         named = document.get("model")
-        model = get_model(named if isinstance(named, str) and named in MODELS else "EC20")
+        model = get_model(named if isinstance(named, str) and named in MODELS else self.model or "EC20")
         entries, problems = list(_entries(document)), []
         for table, key, value in entries:
             try:

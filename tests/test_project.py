@@ -509,3 +509,14 @@ def test_the_example_of_the_documentation_is_a_project(tmp_path):
     usual = SystemBlock()
     named = project.system.watchdog_ms, project.system.constant_scan_ms, project.system.hold_values, project.system.format_lock
     assert named == (usual.watchdog_ms, usual.constant_scan_ms, usual.hold_values, usual.format_lock)
+
+
+def test_the_name_of_a_file_may_tell_its_model(tmp_path):
+    text = "LD M8000\nOUT T0 K5\n"
+    (tmp_path / "answer.h2u.il").write_text(text)
+    (tmp_path / "answer.il").write_text(text)
+    assert ecsim.compile(tmp_path / "answer.h2u.il").model.name == "H2U"
+    assert Project.of(tmp_path / "answer.il").model is None
+    assert Project.spelled({"answer.h1u.il": text}).model == "H1U"
+    assert Project.spelled({"a.h1u.il": text, "b.h2u.il": text}).model is None
+    assert Project.spelled({"answer.h1u.il": text, "plc.toml": 'model = "H2U"\n'}).model == "H2U"

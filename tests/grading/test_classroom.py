@@ -219,7 +219,7 @@ def test_the_command_grades_a_class(folder, tmp_path, capsys):
         (["grade", "nothing", "x.il"], "there is no exercise 'nothing'"),
         (["grade", "conveyor", "x.il"], "x.il cannot be read"),
         (["grade", "conveyor", "x.il", "--workers", "2"], "are for a folder of submissions"),
-        (["grade", "conveyor", "x.il", "--model", "H2U"], "not for H2U"),
+        (["grade", "conveyor", "x.il", "--model", "H3U"], "not for H3U"),
         (["mutate", "nothing"], "there is no exercise"),
     ],
 )

@@ -122,6 +122,18 @@ def test_subroutines_become_labels_and_back():
     assert "SUBROUTINE SBR_P0" in to_ec20("\n".join(fx))
 
 
+def test_interrupts_of_inputs_and_timers():
+    text = (
+        "PROGRAM MAIN\nLD SM1\nSET SM42\nMOV 50 SD66\nSET SM66\nEI\nEND_PROGRAM\n"
+        "INTERRUPT A EVENT 2\nLD SM0\nINC D0\nEND_INTERRUPT\nINTERRUPT B EVENT 26\nLD SM0\nINC D1\nEND_INTERRUPT"
+    )
+    fx = to_h2u(text)
+    assert fx[:4] == ["LD M8002", "RST M8052", "RST M8056", "EI"]
+    assert {"I201", "I650", "IRET"} <= set(fx)
+    back = to_ec20("\n".join(fx))
+    assert {"SET SM42", "SET SM66", "MOV 50 SD66", "INTERRUPT INT_I201 EVENT 2", "INTERRUPT INT_I650 EVENT 26"} <= set(back)
+
+
 def test_names_and_comments_stay():
     text = "VAR_GLOBAL\n  Start AT X0 // the start switch\n  Slow AT T205\nEND_VAR\n\n// How it begins\nLD Start // pressed\nTON Slow 5\nLD Slow\nOUT Y0"
     done = translate(text, "H2U")
