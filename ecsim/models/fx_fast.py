@@ -26,15 +26,17 @@ FAST_COUNTERS = {
 EDGES = {100 * number + rising: (number, bool(rising)) for number in range(6) for rising in (0, 1)}
 TIMED = {100 * timer + ms: ms for timer in (6, 7, 8) for ms in range(1, 100)}
 _MATCHES = range(10, 70, 10)  # I010 to I060, of HSCS
-EVENTS = {
+_MASKED = {
     **{event: 8050 + number for event, (number, _) in EDGES.items()},
     **{event: 8050 + event // 100 for event in TIMED},
     **dict.fromkeys(_MATCHES, 8059),
 }
+# I502 to I506, the ends of pulses at Y0 to Y4: here a relay lets them ask (docs/decisions.md).
+EVENTS = _MASKED | {502 + output: 8090 + output for output in range(5)}
 
 RELAYS = {"capture": 8170, "fourfold": 7944}  # M(7944 + n) for C(n): M8195 for C251
 H2U = {
-    "fast_counters": FAST_COUNTERS, "events": EVENTS, "events_masked": True, "edge_events": EDGES, "timed_ms": TIMED,
+    "fast_counters": FAST_COUNTERS, "events": EVENTS, "masked_events": frozenset(_MASKED), "edge_events": EDGES, "timed_ms": TIMED,
     "captures": 6, "captures_when_enabled": True,
 }  # fmt: skip
-H1U = H2U | {"events": {event: relay for event, relay in EVENTS.items() if event not in TIMED}, "timed_ms": {}}
+H1U = H2U | {"events": {event: relay for event, relay in _MASKED.items() if event not in TIMED}, "timed_ms": {}}

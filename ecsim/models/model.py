@@ -216,7 +216,7 @@ class Model:
     unset: dict[str, str] = field(default_factory=dict)  # settings that the system block does not have -> what to do instead
     fast_counters: dict[int, FastCounter] = field(default_factory=dict)
     events: dict[int, int] = field(default_factory=dict)  # interrupt event -> the special relay that enables it (9.1)
-    events_masked: bool = False  # that relay forbids the event instead
+    masked_events: frozenset[int] = frozenset()  # those whose relay forbids them instead
     edge_events: dict[int, tuple[int, bool]] = field(default_factory=dict)  # event -> its input, whether it is the rising edge
     timed_registers: dict[int, int] = field(default_factory=dict)  # event -> the register with its period in ms
     timed_ms: dict[int, int] = field(default_factory=dict)  # event -> its period, where that is fixed

@@ -111,13 +111,13 @@ def test_header_and_terminator_stand_in_d8124_and_d8125():
 
 
 def test_a_message_that_breaks_off_ends_by_its_time():
-    plc, instrument = talking(b"abc", receive=9)
+    plc, _ = talking(b"abc", receive=9)
     plc["D8129"] = 5
     plc["X0"] = 1
     plc.until("M8123", timeout_ms=500)
     ended = plc.time_us
     assert [plc["M8129"], plc["D8123"], plc["D200"]] == [1, 3, 0x6261]
-    plc, instrument = talking(b"abc", receive=9)
+    plc, _ = talking(b"abc", receive=9)
     plc["X0"] = 1
     plc.until("M8123", timeout_ms=500)
     assert plc.time_us - ended == 50_000  # 0 stands for 100 ms

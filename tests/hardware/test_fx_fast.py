@@ -226,6 +226,19 @@ def test_a_match_of_a_counter_asks_for_its_label_unless_m8059_forbids(model, lab
     assert plc["D0"] == 1
 
 
+@pytest.mark.parametrize("output", range(5))
+def test_the_end_of_pulses_asks_for_its_label_while_its_relay_is_on(output):
+    plc = machine(routine(f"I{502 + output}", f"LD M8000\nEI\nLD X20\nOUT M{8090 + output}\nLD X21\nPLSY K1000 K3 Y{output}"))
+    plc["X21"] = 1
+    plc.scan(3)
+    assert plc["D0"] == 0
+    plc.set({"X20": 1, "X21": 0})
+    plc.scan()
+    plc["X21"] = 1
+    plc.scan(3)
+    assert plc["D0"] == 1
+
+
 # -- pulse catch and filter -------------------------------------------------------------------------------------------------------
 
 
