@@ -1,5 +1,6 @@
 """The report as a page: HTML with its own style, for a notebook's output and for files."""
 
+from collections.abc import Callable
 from functools import cache
 from html import escape
 from importlib.resources import files
@@ -20,8 +21,11 @@ def style() -> str:
     return look("tokens.css") + files("ecsim.grading").joinpath("report.css").read_text(encoding="utf-8")
 
 
-def panel(report: Report, styled: bool = True) -> str:
-    """The report as one section; `styled` puts the style before it."""
+def panel(report: Report, styled: bool = True, actions: Callable[[Verdict], str] | None = None, foot: str = "") -> str:
+    """The report as one section; `styled` puts the style before it.
+
+    `actions` gives the buttons of a broken rule; without it the page says how to get to the moment. `foot` is HTML at the end.
+    """
     kept = sum(verdict.passed for verdict in report.verdicts)
     tally = "".join(f'<i class="{STATES.get(verdict.state, NEVER_TRIED)[0]}"></i>' for verdict in report.verdicts)
     facts = {"exercise": report.title, "your program": report.program, "PLC": report.model}
@@ -36,15 +40,22 @@ def panel(report: Report, styled: bool = True) -> str:
         f'</span></div><div class="tally" aria-hidden="true">{tally}</div><dl class="facts">{rows}</dl></div>',
         f'<p class="reason">{escape(report.reason)}</p>' if report.reason else "",
         "".join(f'<pre class="problem">{escape(problem)}</pre>' for problem in report.problems),
-        f'<ol class="rules">{"".join(_rule(verdict, number) for number, verdict in enumerate(report.verdicts))}</ol>',
+        f'<ol class="rules">{"".join(_rule(verdict, number, actions or _way) for number, verdict in enumerate(report.verdicts))}</ol>',
         "".join(f'<p class="note">{escape(note)}</p>' for note in report.notes),
         f'<p class="hint"><b>Hint</b> {escape(report.hint)}</p>' if report.hint else "",
+        foot,
         "</section>",
     ]
     return "".join(parts)
 
 
-def _rule(verdict: Verdict, number: int) -> str:
+def _way(verdict: Verdict) -> str:
+    """How to get to the moment from a page that has no program behind it."""
+    call = escape(f'report.replay("{verdict.rule}")')
+    return f"<span><b>Go to the scan</b> grade the program in a notebook; <code>{call}</code> puts PLC and machine to 2 s before it</span>"
+
+
+def _rule(verdict: Verdict, number: int, actions: Callable[[Verdict], str]) -> str:
     kind, icon, state = STATES.get(verdict.state, NEVER_TRIED)
     label = f"{verdict.words}: {state}"
     failure = verdict.failure
@@ -60,7 +71,8 @@ def _rule(verdict: Verdict, number: int) -> str:
     return (
         f'<li class="rule fail" data-rule="{escape(verdict.rule)}"><details open><summary aria-label="{escape(label)}">{line}</summary>'
         f'<div class="evidence"><p><b>Expected</b>{escape(failure.expected)}</p><p><b>Found</b>{escape(failure.found)}</p>'
-        f'<p><b>Scenario</b>{escape(happening)}</p><div class="chartbox">{failure.chart.svg(f"fail-{number}-{failure.scan}")}</div></div>'
+        f'<p><b>Scenario</b>{escape(happening)}</p><div class="chartbox">{failure.chart.svg(f"fail-{number}-{failure.scan}")}</div>'
+        f'<div class="actions">{actions(verdict)}</div></div>'
         f"</details></li>"
     )
 
