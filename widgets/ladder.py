@@ -20,7 +20,8 @@ from .plate import Plated
 from .rig import PREFIX, Rig
 
 NARROWEST, WIDEST = 340, 1400
-FIRST = 12  # networks that are there before a page has said what it looks at
+WHOLE = 150  # a ladder of so many networks is drawn whole: following fast steps would else send it again and again
+FIRST = 12  # networks of a larger one that are there before a page has said what it looks at
 MOST_LOOKS, MOST_NETWORKS = 4, 300  # views at a time, and what one of them may look at
 MOST_PLACES = 200  # of a device, told at once
 
@@ -33,7 +34,7 @@ class Ladder(Plated):
     def __init__(self, rig: Rig):
         super().__init__(rig)
         self.drawing = ladder(rig.program)
-        self._looks: dict[str, range] = {"": range(min(FIRST, len(self.drawing)))}
+        self._looks: dict[str, range] = {"": range(len(self.drawing) if len(self.drawing) <= WHOLE else FIRST)}
         self._lay_out(NARROWEST)
         self.least = int(self.sheet.width)  # the program may need more than was asked for
         self.first = [entry.words[0].position for entry in self.drawing.entries]
@@ -84,6 +85,8 @@ class Ladder(Plated):
 
     def on_see(self, view, first, last):
         """A view looks at the networks from `first` to `last`, counted from 0."""
+        if len(self.drawing) <= WHOLE:
+            return
         first = min(max(int(first), 0), len(self.drawing))
         looks = {name: numbers for name, numbers in self._looks.items() if name not in ("", view)}
         while len(looks) >= MOST_LOOKS:  # a page that went away leaves its own behind
