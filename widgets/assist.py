@@ -134,10 +134,9 @@ class Place:
                         yield Option(str(operand), "device", names.get(str(operand), "used in this program"))
         for area in spec.order if spec else ():
             if area in self.model.areas:
-                count = self.model.areas[area].count
-                first = next((number for number in range(count) if number not in used.get(area, ())), 0)
-                last = number_text(area, count - 1)
-                yield Option(f"{area}{number_text(area, first)}", "device", f"the first one unused, of {area}0 to {area}{last}")
+                room = self.model.areas[area]
+                first = next((number for number in range(room.end(0)) if number not in used.get(area, ())), 0)
+                yield Option(f"{area}{number_text(area, first)}", "device", f"the first one unused, of {room.span}")
 
     def signature(self) -> dict | None:
         """The instruction of the line with its operands, and which of them is being typed; None where there is none."""

@@ -290,4 +290,5 @@ class Table:
         area = self.plc.model.areas.get(word.upper())
         if area is None:
             return None
-        return f"{area.name}0-{area.name}{number_text(area.name, area.count - 1)}", "", f"all {area.count:,} of them"
+        count = area.end(0)  # of M those that come before a hole
+        return f"{area.name}0-{area.name}{number_text(area.name, count - 1)}", "", f"all {count:,} of them"
