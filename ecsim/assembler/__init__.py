@@ -11,6 +11,7 @@ from ..instructions.signature import OperandSpec, parse_signature
 from ..instructions.spelling import instructions_of, pulse_forms_of, section_of
 from ..models import By, Model, get_model
 from ..values import BOOL, TYPES
+from .hints import elsewhere
 from .inputs import check_inputs
 from .operands import Refused, Resolver
 from .program import Instruction, Network, Program, Region, Unit, Variable
@@ -245,9 +246,13 @@ class _Assembler:
         if operands is None:
             return None
         spelled = statement.mnemonic if statement.mnemonic != definition.mnemonic else ""
-        return Instruction(
-            definition.mnemonic, definition, operands, statement.operands, statement.line, statement.comment, spelled=spelled
-        )
+        written = tuple(self._written(*pair) for pair in zip(statement.operands, operands, strict=True))
+        return Instruction(definition.mnemonic, definition, operands, written, statement.line, statement.comment, spelled=spelled)
+
+    def _written(self, word: str, operand) -> str:
+        """An operand as it was written, but X000, as lists of the FX family have it, as X0."""
+        longer = self.model.syntax.pointers and isinstance(operand, Device | Bits) and self._is_operand(word)
+        return str(operand) if longer and word.upper() != str(operand) else word
 
     def _definition(self, statement: Statement, unit: Unit) -> Definition | None:
         """The row that a statement's name stands for, with its first operand where that decides."""
@@ -275,11 +280,14 @@ class _Assembler:
         row = TABLE.get(written)
         if row is not None:
             here = self.model.spelled(written)
-            hint = f"write {' or '.join(here)}" if here else f"{written} exists on {' and '.join(row.models)}"
+            hint = self.model.foreign.get(written) or (
+                f"write {' or '.join(here)}" if here else f"{written} exists on {' and '.join(row.models)}"
+            )
             self.source.report(statement.line, f"{self.model.name} has no {written}", hint, row.section)
             return
         close = get_close_matches(written[:12], self.definitions, 3, 0.6)
-        hint = FOREIGN.get(written) or (f"did you mean {' or '.join(close)}?" if close else "one instruction a line, for example LD X0")
+        known = self.model.foreign.get(written) or FOREIGN.get(written) or elsewhere(written, self.model)
+        hint = known or (f"did you mean {' or '.join(close)}?" if close else "one instruction a line, for example LD X0")
         self.source.report(statement.line, f"{shown(written)} is no instruction", hint)
 
     def _operands(self, definition: Definition, statement: Statement, unit: Unit):

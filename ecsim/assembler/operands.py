@@ -6,6 +6,7 @@ from ..devices import Bits, Constant, Device, IndexedConstant, Name, Operand, Op
 from ..instructions.signature import OperandSpec
 from ..models import Model
 from ..values import REAL, REAL_MAX, wrap
+from .hints import special_device
 from .program import Variable
 from .reader import shown
 
@@ -53,6 +54,11 @@ class Resolver:
     def _instead(self, text: str) -> str:
         """What to write for a word that is declared nowhere: perhaps it is spelled as elsewhere, or mistyped."""
         prefix, digits = text[:1].upper(), text[1:]
+        special = special_device(text, self.model)
+        if special:
+            return special
+        if self._means(written := f"K{text}"):
+            return f"constants are written {written} here"
         if prefix in ("K", "H") and self._means(written := digits if prefix == "K" else f"16#{digits}"):
             return f"constants are written {written} here"
         if self._means(written := text.strip(";()")):
@@ -215,7 +221,8 @@ class Resolver:
     def _number(self, area: str, number: int, length: int, text: str) -> None:
         room = self.model.areas[area]
         if not room.has(number):
-            raise Refused(f"{self.model.name} has no {area}{number_text(area, number)} ({room.span})", "", "3.1")
+            name = f"{area}{number_text(area, number)}"
+            raise Refused(f"{self.model.name} has no {name} ({room.span})", special_device(name, self.model), "3.1")
         if number + length > room.end(number):
             last = f"{area}{number_text(area, room.end(number) - 1)}"
             raise Refused(

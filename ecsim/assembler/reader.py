@@ -125,7 +125,7 @@ class _Reader:
         lines = self._without_blocks(text).split("\n")
         source.lines[self.first :] = lines
         for number, line in enumerate(lines, self.first + 1):
-            code, slashes, comment = line.partition("//")
+            code, slashes, comment = self._cut(line)
             words = (code.replace(",", " ") if "," in code else code).split()
             if not words:
                 if slashes:
@@ -142,6 +142,11 @@ class _Reader:
             )
         if self.in_globals:
             source.report(len(source.lines), "VAR_GLOBAL has no END_VAR")
+
+    @staticmethod
+    def _cut(line: str) -> tuple[str, str, str]:
+        """A line as what is code, the mark of a comment, and the comment."""
+        return line.partition("//")
 
     def finish(self) -> None:
         """All files have been read."""
@@ -288,6 +293,7 @@ class _Reader:
 
 
 _POINTER = re.compile(r"([PI])(\d{1,4})")
+_MARK = re.compile(r"//|;")  # lists of this family have comments behind a semicolon too
 _ENDS = {"SRET": "SUBROUTINE", "IRET": "INTERRUPT"}
 
 
@@ -306,6 +312,11 @@ class _PointerReader(_Reader):
         self.behind = ""  # FEND or END, once it has been read
         self.lost = False  # instructions outside every part are told once
         self.pointers: dict[str, int] = {}  # pointer -> its line
+
+    @staticmethod
+    def _cut(line: str) -> tuple[str, str, str]:
+        mark = _MARK.search(line)
+        return (line[: mark.start()], mark[0], line[mark.end() :]) if mark else (line, "", "")
 
     def _line(self, words: list[str], comment: str, number: int) -> None:
         head = words[0].upper()

@@ -99,6 +99,7 @@ H2U = Model(
     spelling=fx_spelling.H2U,
     functions=fx_spelling.FUNCTIONS,
     sections=fx_spelling.SECTIONS,
+    foreign=fx_spelling.FOREIGN,
     levels=True,
     strict_steps=True,
     overlap=True,

@@ -26,14 +26,14 @@ H2U: dict[str, str | By] = {
     **{name: f"FX:{name}" for name in "LDP LDF ANDP ANDF ORP ORF PLS PLF MC MCR END I".split()},
     "OUT": By(
         "OUT",
-        ("T", 0, 245, By("FX:OUT T", ("D", 0, 8255, "FX:OUT T D"))),
-        ("T", 246, 255, By("FX:OUT T246", ("D", 0, 8255, "FX:OUT T246 D"))),
+        ("T", 0, 245, By("FX:OUT T", ("D", *ALL, "FX:OUT T D"))),
+        ("T", 246, 255, By("FX:OUT T246", ("D", *ALL, "FX:OUT T246 D"))),
         ("C", 0, 199, "FX:OUT C"),
         ("C", 200, 234, "FX:OUT C200"),
         ("C", 235, 255, "FX:OUT C235"),
     ),
     "SET": By("SET", ("T", 0, 255, "FX:SET"), ("C", 0, 255, "FX:SET")),
-    "RST": By("RST", ("D", 0, 8255, "FX:RST D"), ("V", 0, 7, "FX:RST D"), ("Z", 0, 7, "FX:RST D")),
+    "RST": By("RST", ("D", *ALL, "FX:RST D"), ("V", 0, 7, "FX:RST D"), ("Z", 0, 7, "FX:RST D")),
     "P": "LBL",
     # FNC 00 to 09: program flow
     "CJ": By("CJ", ("P", END_LABEL, END_LABEL, "FX:CJ END")),
@@ -290,3 +290,23 @@ SECTIONS = {
     "5.3": "4.1.1", "5.4": "3.5", "5.5": "3.6", "6.1.1": "FNC 08", "6.1.3": "3.8", "6.1.4": "FNC 00", "6.1.5": "FNC 06",
     "6.1.9": "FNC 03", "6.1.11": "FNC 01", "6.1.12": "FNC 02", "7": "4.1.1", "8": "3.6", "9": "3.8",
 }  # fmt: skip
+
+# Words of EC and of other families -> what is written here.
+FOREIGN = {
+    **dict.fromkeys(("TON", "TMR"), "write OUT T0 K100: the number tells time unit and kind, T0 to T245 without flow begin anew"),
+    "TONR": "write OUT T250 K100: T246 to T255 keep their value",
+    "TOF": "write OUT with a timer behind the inverted condition",
+    "TMON": "write a latch with OUT and a timer",
+    **dict.fromkeys(("CTU", "CNT"), "write OUT C0 K10"),
+    "CTR": "write OUT C0 K10 and RST C0",
+    "DCNT": "write OUT C200 K10; M8200 ON counts down",
+    "HCNT": "write OUT C235 K10",
+    "EU": "write LDP, ANDP or ORP instead of the contact before, or PLS",
+    "ED": "write LDF, ANDF or ORF instead of the contact before, or PLF",
+    "LBL": "write the label alone on its line: P1",
+    **dict.fromkeys(("CSRET", "CIRET", "CFEND"), "write CJ to a label before SRET, IRET or FEND"),
+    "RMOV": "write DMOV",
+}
+FOREIGN |= {
+    f"R{name}": f"write DE{there}" for name, there in (("ADD", "ADD"), ("SUB", "SUB"), ("MUL", "MUL"), ("DIV", "DIV"), ("SQT", "SQR"))
+}

@@ -201,6 +201,7 @@ class Model:
     spelling: dict[str, str | By] = field(default_factory=dict)  # the family's name of each instruction -> TABLE's; empty: TABLE's own
     operand_ranges: dict[str, tuple[int, int]] = field(default_factory=dict)  # kind of operand -> its numbers, where they differ
     functions: dict[str, str] = field(default_factory=dict)  # name of an instruction -> where the family's manual has it
+    foreign: dict[str, str] = field(default_factory=dict)  # a word of others -> what to write here
     sections: dict[str, str] = field(default_factory=dict)  # section of EC's manual -> the family's on the same; empty: the same manual
     levels: bool = False  # MC has a level: the end of one ends those inside it
     strict_steps: bool = False  # what may stand in the conditions of transitions where ways part or join is limited
@@ -250,7 +251,7 @@ class Model:
 
     def section(self, section: str) -> str:
         """Where this family's manual has what EC's has in a section; "" where it has nothing."""
-        if not self.sections or not section[:1].isdigit():
+        if not self.sections or not section[:1].isdigit() or section in self.functions.values() or section in self.sections.values():
             return section
         found = max((known for known in self.sections if section == known or section.startswith(f"{known}.")), key=len, default="")
         return self.sections.get(found, "")
