@@ -70,7 +70,7 @@ class Place:
         self.word = re.search(r"[^\s,]*$", line)[0]
         self.start = at - len(self.word)
         self.words = _WORD.findall(line[: len(line) - len(self.word)])
-        self.source: Source = read(text)
+        self.source: Source = read(text, syntax=model.syntax)
         self.unit = self._unit(before.count("\n") + 1)
 
     def _unit(self, line: int) -> RawUnit | None:
@@ -93,7 +93,7 @@ class Place:
     def _firsts(self) -> Iterator[Option]:
         for mnemonic, row in instructions_of(self.model).items():
             yield Option(mnemonic, "op", row.title)
-        for header in sorted(HEADERS):
+        for header in ("VAR_GLOBAL", "END_VAR") if self.model.syntax.pointers else sorted(HEADERS):
             yield Option(header, "keyword", "")
 
     def _operands(self) -> Iterator[Option]:

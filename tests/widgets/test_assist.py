@@ -100,3 +100,14 @@ def test_every_problem_is_marked_at_its_word():
 
 def test_a_good_text_has_no_marks():
     assert marks("LD X0\nOUT Y0", EC20) == []
+
+
+def test_a_program_of_the_fx_family_is_offered_its_own_words():
+    model = get_model("H2U")
+    text = "LD X0\nCALL P\nFEND\nP10\nLD M8000\nINC D0\nSRET\n"
+    assert [option.text for option in Place(text, text.index("CALL P") + 6, model).options()] == ["P10"]
+    firsts = {option.text for option in Place("", 0, model).options()}
+    assert "PROGRAM" not in firsts
+    assert {"LDP", "LDF", "VAR_GLOBAL", "FEND"} <= {
+        option.text for word in ("LD", "V", "FE") for option in Place(word, len(word), model).options()
+    }
