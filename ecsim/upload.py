@@ -23,6 +23,8 @@ def uploaded(program: Program, files: Mapping[str, str], informed: bool = True) 
     names = {} if informed else {name.casefold(): str(variable.device) for name, variable in program.variables.items()}
     tables = [print_globals(program.variables.values())] if program.variables and informed else []
     units = [unit if informed else _bare(unit, names) for unit in program.units]
+    if program.model.syntax.pointers and not any(unit.closed for unit in units):
+        return {"main.il": "\n".join([*tables, *map(print_unit_body, units)])}
     return {"main.il": "\n".join([*tables, *(print_unit(unit, _sealed(unit) if unit.closed else "") for unit in units)])}
 
 
