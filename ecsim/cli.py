@@ -12,6 +12,7 @@ from pathlib import Path
 from . import __version__, terminal
 from . import compile as compile_program
 from .errors import EcsimError, ProgramError
+from .exchange import read_list, write_csv, write_list
 from .grading.command import add_commands
 from .help import help as help_on
 from .modbus import serve
@@ -99,6 +100,26 @@ def _parser() -> argparse.ArgumentParser:
     into.add_argument("--model", choices=list(MODELS), help="the model that it is for; EC20 unless the file or project says otherwise")
     into.add_argument("--out", type=Path, metavar="FILE", help="write the program to this file, and the report to the screen")
     into.set_defaults(act=_translate)
+    taken = commands.add_parser(
+        "import",
+        help="read a program that another tool has written",
+        description="Read a program for H1U or H2U from the CSV of Mitsubishi's software or from a plain list of instructions.",
+        epilog="Ends with 0, with 1 when the program does not compile, with 2 when the file is something else.",
+    )
+    taken.add_argument("file", type=Path, metavar="FILE", help="UTF-16 with tabs, or lines of instructions")
+    taken.add_argument("--model", choices=list(MODELS), default="H2U", help="the model that it is for (H2U)")
+    taken.add_argument("--out", type=Path, metavar="FILE", help="write the program to this file and not to the screen")
+    taken.set_defaults(act=_import)
+    given = commands.add_parser(
+        "export",
+        help="write a program for another tool",
+        description="Write a program for H1U or H2U as CSV of Mitsubishi's software, or as a plain list where the name ends in .txt.",
+        epilog="Ends with 0, with 1 when the program does not compile, with 2 for one of another family.",
+    )
+    given.add_argument("program", type=Path, metavar="PROGRAM", help="an .il file or a project folder")
+    given.add_argument("file", type=Path, metavar="FILE", help="NAME.csv or NAME.txt")
+    given.add_argument("--model", choices=list(MODELS), help="H2U unless the file or project says otherwise")
+    given.set_defaults(act=_export)
     tell = commands.add_parser("help", help="tell about an instruction", description="Tell about an instruction, a section, or list all.")
     tell.add_argument("name", nargs="?", default="", metavar="NAME", help="an instruction (ADD) or a section of the manual (6.3)")
     tell.add_argument("--model", choices=list(MODELS), default="", help="whose instructions; EC's unless only H2U has such a one")
@@ -201,15 +222,43 @@ def _translate(options: argparse.Namespace) -> int:
         done = translate(compile_program(options.program, options.model), options.to)
     except ProgramError as error:
         return _told(error)
-    if options.out is None:
-        print(done.text)
-    else:
-        try:
-            replace_files(options.out.parent, {options.out.name: done.text}, [])
-        except OSError as error:
-            raise EcsimError(f"{options.out} cannot be written: {error.strerror}") from None
+    _write(options.out, done.text)
     print(done.report(), file=sys.stderr if options.out is None else sys.stdout)
     return 0
+
+
+def _import(options: argparse.Namespace) -> int:
+    try:
+        content = options.file.read_bytes()
+    except OSError as error:
+        raise EcsimError(f"{options.file} cannot be read: {error.strerror}") from None
+    try:
+        _write(options.out, read_list(content, options.model))
+    except ProgramError as error:
+        return _told(error)
+    return 0
+
+
+def _export(options: argparse.Namespace) -> int:
+    project = Project.of(options.program)
+    try:
+        program = project.compile(options.model or project.model or "H2U")
+    except ProgramError as error:
+        return _told(error)
+    plain = options.file.suffix.lower() == ".txt"
+    _write(options.file, write_list(program) if plain else write_csv(program, options.program.name.split(".")[0].upper()))
+    return 0
+
+
+def _write(path: Path | None, content: str | bytes) -> None:
+    """Put a text to the screen, or a file into its place as a whole."""
+    if path is None:
+        print(content)
+        return
+    try:
+        replace_files(path.parent, {path.name: content}, [])
+    except OSError as error:
+        raise EcsimError(f"{path} cannot be written: {error.strerror}") from None
 
 
 def _help(options: argparse.Namespace) -> int:

@@ -324,19 +324,19 @@ def _text(path: Path) -> str:
         raise EcsimError(f"{path} cannot be read: {getattr(error, 'strerror', None) or error}") from None
 
 
-def replace_files(folder: Path, texts: dict[str, str], gone: list[Path]) -> None:
+def replace_files(folder: Path, texts: Mapping[str, str | bytes], gone: list[Path]) -> None:
     """Write all texts beside their places first, then put each into its place and remove what is gone; when that fails, all is as it was."""
     former: dict[Path, bytes | None] = {}  # of the files that have changed already
     waiting: list[tuple[str, Path]] = []
     try:
         for name, text in texts.items():
-            target = folder / name
-            if target.exists() and target.read_bytes() == text.encode():
+            target, content = folder / name, text.encode() if isinstance(text, str) else text
+            if target.exists() and target.read_bytes() == content:
                 continue
             number, temporary = tempfile.mkstemp(dir=folder, prefix=f".{name}.")
             waiting.append((temporary, target))
             with os.fdopen(number, "wb") as file:
-                file.write(text.encode())
+                file.write(content)
                 file.flush()
                 os.fsync(file.fileno())
             os.chmod(temporary, target.stat().st_mode if target.exists() else 0o644)

@@ -128,3 +128,27 @@ def test_a_wrong_use_ends_with_2_and_says_how_it_is_used(arguments, capsys):
 def test_the_package_is_a_command_too(cases):
     done = subprocess.run([sys.executable, "-m", "ecsim", "cases", cases(FAILING)], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout.splitlines()[-1]) == (1, "0 passed, 1 failed")
+
+
+def test_translate_import_and_export(tmp_path, capsys):
+    source, there, table, back = (tmp_path / name for name in ("lamp.il", "lamp.h2u.il", "lamp.csv", "back.h2u.il"))
+    source.write_text("LD X0\nEU\nTON T0 5\n")
+    assert main(["translate", str(source), "--to", "H2U"]) == 0
+    shown = capsys.readouterr()
+    assert shown.out.split() == ["LDP", "X0", "OUT", "T0", "K5"]
+    assert "line 3: timers stop at their preset there" in shown.err
+    assert main(["translate", str(source), "--to", "H2U", "--out", str(there)]) == 0
+    assert main(["export", str(there), str(table)]) == 0
+    assert table.read_bytes()[:2] == b"\xff\xfe"
+    assert main(["import", str(table), "--out", str(back)]) == 0
+    assert back.read_text() == there.read_text()
+    assert main(["export", str(there), str(tmp_path / "lamp.txt")]) == 0
+    assert (tmp_path / "lamp.txt").read_text().split() == ["0", "LDP", "X0", "2", "OUT", "T0", "K5"]
+    capsys.readouterr()
+    source.write_text("LD X0\nTOF T0 5\n")
+    assert main(["translate", str(source), "--to", "H2U"]) == 1
+    assert "line 2: TOF T0 5: H2U has nothing that does the same" in capsys.readouterr().out
+    assert main(["translate", str(source), "--to", "EC10"]) == 2
+    assert main(["import", str(tmp_path / "nothing.csv")]) == 2
+    source.write_text("LD X0\nOUT Q0\n")
+    assert main(["export", str(source), str(table)]) == 1
