@@ -247,6 +247,8 @@ class Resolver:
     def _index(self, spec: OperandSpec, operand: Device | Bits, text: str) -> None:
         if operand.index is None:
             return
+        if operand.area in self.model.index_pairs or operand.area in self.model.index_pairs.values():
+            raise Refused(f"{shown(text)}: an index register cannot be indexed itself", "name the register", "3.2.2")
         if not spec.indexed:
             raise Refused(f"{shown(text)}: {spec.name} cannot be indexed", "name the device itself", "3.2.2")
         if operand.number in self.model.special(operand.area):

@@ -104,7 +104,7 @@ class Writer:
         operands = {spec.name: (spec, operand) for spec, operand in zip(definition.operands, instruction.operands, strict=True)}
         for name, word in zip(self._parameters(instruction), definition.taken, strict=True):
             if word.upper() in operands and word.islower():
-                fields[name] = self.access.place(operands[word.upper()][1])
+                fields[name] = f"({self.access.place(operands[word.upper()][1])})"
                 continue
             if word not in operands:
                 fields[name] = self._special(instruction, word, flow)
@@ -184,7 +184,7 @@ class Writer:
         """The length of a span as an expression."""
         pairs = list(zip(instruction.definition.operands, instruction.operands, strict=True))
         loads = {other.name: self.access.load(other.type, operand) for other, operand in pairs if other.span is None and other.plain}
-        loads |= {other.name.lower(): self.access.place(operand) for other, operand in pairs if isinstance(operand, (Device, Bits))}
+        loads |= {other.name.lower(): f"({self.access.place(operand)})" for other, operand in pairs if isinstance(operand, (Device, Bits))}
 
         def known(match: re.Match) -> str:
             word = match[0]
