@@ -88,6 +88,8 @@ class Session:
     """
 
     def __init__(self, plc: Plc, plant: Plant | None = None, name: str = "lab", speed: float | None = 1.0, record: Recording | None = None):
+        if plant is not None and (isinstance(plant, type) or not hasattr(plant, "wiring") or not callable(getattr(plant, "step", None))):
+            raise EcsimError(f"{plant!r:.60} is no machine; give an object with `wiring` and `step(seconds, outputs)`, or None")
         self.plc, self.plant, self.name = plc, plant, name
         self.recording = record
         carried = getattr(plant, "sensors", None)
@@ -163,9 +165,7 @@ class Session:
         if self.plant is None:
             return
         plc = self.plc
-        outputs = dict(zip(self._output_names, map(int, self._driven(plc.driven)), strict=False)) | dict.fromkeys(
-            self._counted, 0
-        )
+        outputs = dict(zip(self._output_names, map(int, self._driven(plc.driven)), strict=False)) | dict.fromkeys(self._counted, 0)
         outputs |= {name: self._signals[name].get() for name in self._analog_outputs}
         self._first_answers = dict(self.plant.step(0.0, outputs))
         self._answer_first()

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ecsim.assembler import Program
+from ecsim.errors import EcsimError
 from ecsim.plc import Plc
 from ecsim.session import Session
 
@@ -34,6 +35,14 @@ def parts_of(rig: Rig) -> list[str]:
     return [key for key in PARTS if shown.get(key, True)]
 
 
+def _names(what: str, names: Iterable[str]) -> tuple[str, ...]:
+    """The names that an argument lists; raises EcsimError for what is no list of names."""
+    found = (None,) if isinstance(names, str) or not isinstance(names, Iterable) else tuple(names)
+    if not all(isinstance(name, str) for name in found):
+        raise EcsimError(f'{what}= takes a list of names, such as ["D0", "X5"], not {names!r:.60}')
+    return found
+
+
 class Lab(Panel):
     """A PLC with its program, its plant and all panels, running on its own.
 
@@ -41,8 +50,9 @@ class Lab(Panel):
     `picture` its drawing. `controls` says what drives an input: "switch" (the default), "push", "latch" or "stop".
     `devices` are watched in the device table, ["D0", "D100-D120:REAL"]; without it those that the program names.
     `trace` names the lanes of the logic analyser, "S" the steps; without it the terminals of the machine and the steps.
-    A lab of the same `name` is stopped and closed first, so running a cell again leaves one simulation.
-    `speed` is times real time, None as fast as it goes; `autostart=False` leaves it paused. Raises ProgramError.
+    It takes the place of a lab of the same `name`, which is stopped and closed, so running a cell again leaves one simulation.
+    `speed` is times real time, None as fast as it goes; `autostart=False` leaves it paused. Raises ProgramError and EcsimError
+    for what it cannot take; then a lab of the same name goes on.
     """
 
     _labs: dict[str, Lab] = {}
@@ -62,16 +72,17 @@ class Lab(Panel):
         devices: Iterable[str] = (),
         trace: Iterable[str] = (),
     ):
+        devices, trace = _names("devices", devices), _names("trace", trace)
         plc = model if isinstance(model, Plc) else Plc(model)
         if program is not None:
             plc.load(program)
         session = Session(plc, plant=plant, name=name, speed=speed)
-        if name in self._labs:
-            self._labs[name].close()
         self.name = name
         title = title or re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(plant).__name__) if plant is not None else ""
         rig = Rig(plc, session, picture=picture, controls=controls, title=title, devices=devices, traced=trace)
         super().__init__(rig)
+        if name in self._labs:
+            self._labs[name].close()
         self._labs[name] = self
         session.trace_frames = True
         if autostart:
