@@ -290,6 +290,9 @@ class Trace(Part):
             entries[f"c{letter}:class"] = f"cursor c{letter}{'' if inside else ' away'}"
             entries[f"c{letter}:transform"] = f"translate({places[letter] if inside else 0} 0)"
             entries[f"c{letter}:aria-valuetext"] = f"{time / 1e6:,.6f} s" if time is not None else "not placed"
+            moments = (None, None, None) if time is None else (min(begin, time), time, max(begin + span, time))
+            for word, moment in zip(("min", "now", "max"), moments, strict=True):  # in seconds
+                entries[f"c{letter}:aria-value{word}"] = None if moment is None else f"{moment / 1e6:.6f}"
         entries["ha:text"] = "now" if scope.cursors["A"] is None else "A"
         entries["hb:text"] = "" if scope.cursors["B"] is None else "B"
         hit = scope.hit_us is not None and begin <= scope.hit_us <= begin + span

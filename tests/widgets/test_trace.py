@@ -74,6 +74,14 @@ def test_a_frame_tells_the_values_of_now_and_at_the_cursors(trace):
     assert frame["cA:aria-valuetext"] == "0.030000 s"
 
 
+def test_a_cursor_tells_a_screen_reader_its_second_and_the_ends_of_the_window(trace):
+    trace.receive("look", {"begin": 10_000, "span": 100_000})
+    assert trace.frame()["cA:aria-valuenow"] is None  # it has not been placed
+    trace.receive("cursor", {"letter": "A", "at": 30_000})
+    frame = trace.frame()
+    assert [float(frame[f"cA:aria-value{word}"]) for word in ("min", "now", "max")] == [0.01, 0.03, 0.11]
+
+
 def test_a_cursor_is_caught_by_an_edge_nearby(trace):
     trace.receive("look", {"begin": 0, "span": 100_000})
     a_pixel = trace.scope.span_us / trace.plot
