@@ -79,7 +79,7 @@ panels.ladder = (place, layout, page, view) => {
     remove(number);
     const node = drawing.add(markup, [...nets].filter(([other]) => other > number).sort(([a], [b]) => a - b)[0]?.[1].node);
     nets.set(number, { node, markup });
-    const title = node.querySelector(".net-title")?.textContent ?? "";
+    const title = (node.querySelector(".net-title title") ?? node.querySelector(".net-title"))?.textContent ?? ""; // a shortened one has the whole as its tip
     set(node, "role", "group");
     set(node, "aria-label", `${node.dataset.unit}, network ${Number(node.dataset.network) + 1}${title ? `, ${title}` : ""}`);
     node.dataset.number = number;

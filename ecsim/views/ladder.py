@@ -21,6 +21,7 @@ from .rungs import Gate, Output, Rung, Word, depth, instruction_list, rung, unit
 # Lengths in px, as the look has them.
 MARGIN, RAIL_STEP, RIGHT_RAIL, EDGE, PLATE = 64, 22, 944, 16, 38
 TITLE_LINE, BUS_ROW, HEAD = 18, 52, 34
+LETTERS = {"net-title": 13, "note": 12}  # their sizes in px, tokens.css
 NATURAL, NARROW, WITH_NOTES, NOTES = 960, 700, 1100, 282
 CELLS = (112, 104, 96, 88, 80)  # a contact's cell: the widest where there is room, a narrower one where a panel then needs no scrolling
 KEPT = 3  # sheets of a ladder
@@ -355,7 +356,7 @@ class Sheet:
         parts += self._frame(strip, prefix)
         parts.append(s.text(18, top + 14, str(rung.number + 1), "net-no"))
         for line, words in enumerate(rung.title.split("\n") if rung.title else []):
-            parts.append(s.text(strip.left + 16, top + 14 + TITLE_LINE * line, words, "note" if line else "net-title"))
+            parts.append(self._title(words, strip.left + 16, top + 14 + TITLE_LINE * line, "note" if line else "net-title"))
         parts.append(s.text(MARGIN - 12, strip.wire + 4, str(strip.entry.words[0].step), "step-no end"))
         parts.append(self._region(strip, prefix))
         live = self.live(number)
@@ -369,6 +370,11 @@ class Sheet:
             for line, words in enumerate(remarks(strip.entry)):
                 parts.append(s.text(self.notes, top + 14 + TITLE_LINE * line, cut(words, room), "note" if line else "note note-1"))
         return s.element("g", "".join(parts), class_="net", data_network=str(rung.number), data_unit=strip.entry.unit.name)
+
+    def _title(self, words: str, x: float, y: float, class_: str) -> str:
+        """A line of a title as far as there is room before the right rail; the whole of it is the tip of a shortened one."""
+        shown = cut(words, self.right - x - 8, LETTERS[class_])
+        return s.element("text", s.escape(shown) + (s.tip(words) if shown != words else ""), class_=class_, x=x, y=y)
 
     def _frame(self, strip: Strip, prefix: str) -> Iterator[str]:
         """The line above a network, and its pieces of the rails."""

@@ -1,5 +1,7 @@
 """Where things lie in a ladder: nothing overlaps, nothing leaves its rails, and power reaches what the scan says it reached."""
 
+import re
+
 from hypothesis import HealthCheck, given, settings
 
 from ecsim import Plc
@@ -121,3 +123,14 @@ def test_what_is_nested_too_deep_is_listed():
     (rung,) = ladder(program).rungs
     assert depth(rung.flow) > DEEPEST
     assert "LD X0" in str(ladder(program))
+
+
+def test_a_long_title_ends_before_the_right_rail_and_tells_the_rest_as_its_tip():
+    words = "the conveyor brings the next bottle below the filling head and waits there"
+    shown = ladder(assemble(f"PROGRAM MAIN\n// {words}\nLD X0\nOUT Y0\nEND_PROGRAM", "EC20"))
+    title = re.compile(r'class="net-title"[^>]*>([^<]*)(?:<title>([^<]*)</title>)?</text>')
+    cut, tip = title.search(shown.svg("", 340)).groups()
+    assert (cut[-1], tip) == ("…", words)
+    assert words.startswith(cut[:-1])
+    assert len(cut) * 13 * 0.5 < 340  # half of its height is what a letter takes, roughly
+    assert title.search(shown.svg("", 1280)).groups() == (words, None)
