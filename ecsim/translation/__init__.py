@@ -4,13 +4,14 @@
 has been compiled for the model that it is for.
 """
 
-from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 from ..assembler import Program, assemble
 from ..assembler.printer import print_globals, print_instructions
 from ..errors import EcsimError, Problem, ProgramError
 from ..models import Model, get_model
+from ..project import Project
 from .places import Places
 from .text import Line, Refusal, Text
 from .to_ec import ToEC
@@ -46,14 +47,14 @@ class Translation:
         return self.text
 
 
-def translate(program: str | Mapping[str, str] | Program, to: str | Model = "H2U", model: str | Model = "EC20") -> Translation:
-    """The program for the model `to`; `model` is the one that a text is written for.
+def translate(program: str | Path | Project | Program, to: str | Model = "H2U", model: str | Model | None = None) -> Translation:
+    """The program for the model `to`. `model` is the one that it is written for: EC20 unless the file's name or the project says otherwise.
 
     Raises ProgramError with everything that cannot be kept (or does not compile), EcsimError for two models of one family.
     """
     target = get_model(to)
     if not isinstance(program, Program):
-        program = assemble(program, model)
+        program = Project.of(program).compile(model)
     way = _WAYS.get((program.model.family, target.family))
     if way is None:
         raise EcsimError(

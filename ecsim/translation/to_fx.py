@@ -27,7 +27,6 @@ NOTES = {
     **dict.fromkeys(("TON", "TONR"), "timers stop at their preset there, and read one in a register when they start"),
     "CTU": "counters stop at their preset there",
     "SEG": "SEGD leaves the upper eight bits of its result as they are",
-    **dict.fromkeys(("EU", "ED"), "an edge in a step that is not active is remembered there until it is"),
     "STL": "in the scan of a transition the step that is left stays ON there beside the one that begins",
 }
 HINTS = {
@@ -117,7 +116,6 @@ class ToFX:
                     self.text.note(instruction.line, NOTES[instruction.mnemonic].format(name=instruction.mnemonic))
                 edge = EDGES.get((instruction.mnemonic, following))
                 if edge:
-                    self.text.note(instructions[place + 1].line, NOTES[following])
                     new = [self._line(instruction, f"LD{edge}", self._operands(instruction))]
                     place += 1
                 elif instruction.mnemonic in ("EU", "ED"):
@@ -136,10 +134,6 @@ class ToFX:
                 new[0].title = title
             lines += new
             place += 1
-        return self._without_empty(lines)
-
-    @staticmethod
-    def _without_empty(lines: list[Line]) -> list[Line]:
         return lines
 
     def _line(self, instruction: Instruction, name: str, written: tuple[str, ...]) -> Line:

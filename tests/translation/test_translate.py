@@ -134,6 +134,14 @@ def test_interrupts_of_inputs_and_timers():
     assert {"SET SM42", "SET SM66", "MOV 50 SD66", "INTERRUPT INT_I201 EVENT 2", "INTERRUPT INT_I650 EVENT 26"} <= set(back)
 
 
+def test_a_file_is_taken_for_the_model_that_its_name_tells(tmp_path):
+    path = tmp_path / "lamp.h2u.il"
+    path.write_text("LDP X0\nOUT Y0\n", encoding="utf-8")
+    assert "EU" in lines(translate(path, "EC20").text)
+    with pytest.raises(ecsim.EcsimError, match="not int"):
+        translate(5)
+
+
 def test_names_and_comments_stay():
     text = "VAR_GLOBAL\n  Start AT X0 // the start switch\n  Slow AT T205\nEND_VAR\n\n// How it begins\nLD Start // pressed\nTON Slow 5\nLD Slow\nOUT Y0"
     done = translate(text, "H2U")
@@ -295,6 +303,21 @@ def test_a_chart_goes_the_same_way(time, seed):
             if not way or way[-1] != active:
                 way.append(active)
     assert ways[0] == ways[1]
+
+
+@pytest.mark.parametrize("edge", ["LD X1\nEU", "LD X1\nED", "LD X1\nAND X3\nEU", "LDI X1\nED"])
+def test_edges_in_a_step_that_sleeps_count_alike(edge):
+    text = f"LD SM1\nSET S0\nSTL S0\nLD X0\nSET S20\nSTL S20\n{edge}\nINC D0\nLD X2\nOUT S0\nRET"
+    machines, done = twins(text, "H2U", "EC20")
+    assert [what for what in map(str, done.differences) if "edge" in what] == []
+    chance = random.Random(edge)
+    for _ in range(300):
+        levels = {f"X{n}": chance.randint(0, 1) for n in range(4) if chance.random() < 0.3}
+        for plc in machines:
+            plc.set(levels)
+            plc.scan()
+        assert machines[0]["D0"] == machines[1]["D0"]
+    assert machines[0]["D0"] > 5
 
 
 @pytest.mark.parametrize(
