@@ -24,7 +24,7 @@ CASES = ROOT / "tests" / "conformance"
 PAGES = ROOT / "docs" / "instructions"
 H2U = MODELS["H2U"]
 NOTE = "<!-- Written by docs/build_instructions.py from the table of instructions; do not edit. -->"
-KEPT = ("id", "models", "il", "scan_ms", "system_block", "data_block", "steps", "note")
+KEPT = ("id", "models", "il", "scan_ms", "system_block", "data_block", "io", "steps", "note")
 
 
 def chosen_examples() -> dict[str, dict[str, Any]]:

@@ -335,6 +335,8 @@ def _story(case: dict[str, Any]) -> Iterable[str]:
         yield f"on {' and '.join(case['models'])}"
     if case.get("scan_ms", 10) != 10:
         yield f"a scan takes {case['scan_ms']} ms"
+    if "io" in case:
+        yield f"the base unit and its modules: {', '.join(each if isinstance(each, str) else f'{each[0]} and {each[1]} points' for each in case['io'])}"
     for what in ("system_block", "data_block"):
         if what in case:
             yield f"{what.replace('_', ' ')}: {_settings(case[what])}"

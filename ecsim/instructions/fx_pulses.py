@@ -1,11 +1,11 @@
-"""FNC 51, 56 to 59 and 155 to 159 of H1U and H2U: pulses in and out, and positioning. All but REFF work as in 6.10 and 6.17.
+"""FNC 51, 53 to 59 and 155 to 159 of H1U and H2U: pulses in and out, and positioning. All but REFF work as in 6.10 and 6.17.
 
 Of numbers with 16 bits there is a form of its own; the 32-bit forms take pairs, the low word in the lower register.
 """
 
 from ..errors import OPERAND, RAMP, SERVO_CHECKSUM, SERVO_SILENT
 from .define import FX, H2U, command
-from .highspeed import plsr, plsy, spd
+from .highspeed import dhsci, dhscr, dhscs, dhsz, plsr, plsy, spd
 from .positioning import drva, drvi, plsv, read_position, zrn
 
 _COUNTED = {"cleared": True, "faults": (OPERAND,), "models": FX}
@@ -19,6 +19,13 @@ def reff(machine, milliseconds):
     machine.inputs.refresh(machine.clock[0], range(8))
 
 
+_COMPARED = {"cleared": True, "models": FX, "steps": 13}
+command("FX:DHSCS", "claim S1:DINT S2:HCOUNTER >D:POINT[Y M S]", section="FNC 53", **_COMPARED)(dhscs)
+command("FX:DHSCS I", "claim S1:DINT S2:HCOUNTER D:EVENT", section="FNC 53", **_COMPARED)(dhsci)
+command("FX:DHSCR", "claim S1:DINT S2:HCOUNTER >D:POINT[Y M S]", section="FNC 54", **_COMPARED)(dhscr)
+command("FX:DHSZ", "claim S1:DINT S2:DINT S:HCOUNTER >D:POINT[Y M S]*3", section="FNC 55", **(_COMPARED | {"models": H2U, "steps": 17}))(
+    dhsz
+)
 command(
     "FX:SPD", "claim S1:POINT[X]=0..5 S2:WORD >D:PLACE[T C D]*3", steps=7, section="FNC 56",
     occupies=lambda model, operands: (operands[0].number,), **_COUNTED,

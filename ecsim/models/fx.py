@@ -4,7 +4,7 @@ import re
 from dataclasses import replace
 
 from ..devices import Constant, OperandError, Syntax
-from . import fx_fast, fx_pulses, fx_serial, fx_spelling
+from . import ec_modules, fx_fast, fx_pulses, fx_serial, fx_spelling
 from .model import Area, Model
 
 _CONSTANT = re.compile(
@@ -127,6 +127,7 @@ H2U = Model(
         "modules": "set modules up with TO",
     },
     fault_record=1,
+    module_kinds=ec_modules.MODULES_EC10,
     base_units=((10, 10), (16, 16), (24, 16), (32, 32), (36, 24), (40, 40), (64, 64)),
     initial_registers=fx_pulses.INITIAL | fx_serial.INITIAL,
     **fx_fast.H2U,
