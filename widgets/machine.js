@@ -37,6 +37,38 @@ panels.machine = (place, layout, page, view) => {
   }
   well.addEventListener("click", () => page.say("machine", "mend", { fault: "all" }));
 
+  // -- keys in the drawing: a finger is on one until it is lifted, wherever that is
+
+  const caps = [...drawing.svg.querySelectorAll("[data-key]")];
+  let finger = null;
+  const lift = () => {
+    if (finger) page.say("machine", "release", { key: finger });
+    finger = null;
+  };
+  const touch = (key) => {
+    lift();
+    if (page.dead) return;
+    finger = key;
+    page.say("machine", "press", { key });
+  };
+  if (caps.length) {
+    set(drawing.svg, "role", "group"); // what is in a picture cannot be pressed
+    roving(drawing.svg, () => caps);
+  }
+  for (const cap of caps) {
+    set(cap, "role", "button");
+    cap.addEventListener("pointerdown", () => touch(cap.dataset.key));
+    cap.addEventListener("keydown", (event) => {
+      if (![" ", "Enter"].includes(event.key)) return;
+      event.preventDefault();
+      event.stopPropagation();
+      if (!event.repeat) touch(cap.dataset.key);
+    });
+    cap.addEventListener("keyup", (event) => [" ", "Enter"].includes(event.key) && lift());
+    cap.addEventListener("blur", lift);
+  }
+  for (const end of ["pointerup", "pointercancel"]) document.addEventListener(end, lift);
+
   const flip = (key) => !page.dead && page.say("machine", key.getAttribute("aria-checked") === "true" ? "mend" : "fail", { fault: key.dataset.fault });
 
   // -- the plate of a sensor
@@ -164,6 +196,8 @@ panels.machine = (place, layout, page, view) => {
     },
     close() {
       document.removeEventListener("pointerdown", outside);
+      for (const end of ["pointerup", "pointercancel"]) document.removeEventListener(end, lift);
+      lift();
       close();
     },
   };

@@ -42,6 +42,20 @@ class Machine(Part):
         """Switch a fault out: a name, a sensor's device, or "all"; gives why it was refused, or ""."""
         return self._refusal(lambda: self.rig.session.mend(fault))
 
+    def on_press(self, key):
+        """Put a finger on a key of the drawing; gives why it was refused, or ""."""
+        return self._finger("hold", key)
+
+    def on_release(self, key):
+        """Take it off again; gives why it was refused, or ""."""
+        return self._finger("release", key)
+
+    def _finger(self, act, key):
+        plant = self.rig.sensors.plant
+        if not hasattr(plant, act):
+            return "this machine has no keys"
+        return self._refusal(lambda: self.rig.session.post(lambda plc: getattr(plant, act)(key)))
+
     def _refusal(self, action):
         try:
             action()

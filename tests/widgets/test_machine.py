@@ -3,6 +3,8 @@
 import pytest
 from ecsim_widgets.machine import Machine
 
+from ecsim.errors import EcsimError
+
 
 @pytest.fixture
 def machine(make_rig, shuttle, picture):
@@ -53,3 +55,22 @@ def test_a_control_that_takes_an_input_over_shows_as_a_stuck_sensor(machine):
     assert machine.rig.by("X0") == "stuck"
     machine.rig.free("X0")
     assert machine.rig.by("X0") == "machine"
+
+
+def test_a_key_of_the_drawing_is_a_finger_on_the_machine(machine, shuttle):
+    held = []
+    shuttle.hold, shuttle.release = held.append, held.remove
+    assert machine.receive("press", {"key": "start"}) == ""
+    assert held == ["start"]
+    assert machine.receive("release", {"key": "start"}) == ""
+    assert held == []
+
+
+def test_a_key_that_is_not_there_is_told(machine, shuttle):
+    assert machine.receive("press", {"key": "start"}) == "this machine has no keys"
+
+    def hold(key):
+        raise EcsimError(f"no key {key}")
+
+    shuttle.hold = hold
+    assert machine.receive("press", {"key": "horn"}) == "no key horn"

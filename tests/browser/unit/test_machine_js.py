@@ -1,7 +1,7 @@
 """The machine's panel in a bare page, on a real conveyor that stands still: plates, switches, marks, keys."""
 
 import pytest
-from ecsim_exercises import conveyor, mixer
+from ecsim_exercises import conveyor, mixer, operator_panel
 
 pytestmark = pytest.mark.browser
 
@@ -116,3 +116,55 @@ def test_without_a_kernel_nothing_can_be_switched(machine):
     assert machine["sensor-X0"].get_attribute("aria-disabled") == "true"
     machine["sensor-X0"].click(force=True)
     assert machine["sensor-plate"].count() == 0
+
+
+@pytest.fixture
+def panel(bench, make_lab):
+    """An operator's panel with some of its parts."""
+    plant = operator_panel.OperatorPanel(("keys", "arrows", "switches", "wheels"))
+    bench.lab = make_lab("LD SM0\nOUT Y21", plant=plant, picture=operator_panel.PICTURE, title="Panel")
+    bench.connect(bench.lab.panel("machine"))
+    return bench
+
+
+def test_a_key_in_the_picture_is_down_for_as_long_as_the_pointer_is(panel):
+    plant, mouse = panel.lab.session.plant, panel.page.mouse
+    panel["machine"].locator('[data-key="keys 7"]').hover()
+    mouse.down()
+    panel.settle()
+    assert plant.pressed == {"keys 7"}
+    assert panel["machine"].locator('[data-key="keys 7"]').get_attribute("class") == "key on"
+    mouse.move(5, 5)
+    mouse.up()
+    panel.settle()
+    assert plant.pressed == set()
+
+
+def test_a_click_turns_a_switch_over_and_a_wheel_on(panel):
+    plant = panel.lab.session.plant
+    for key in ("switches 1 3", "wheels 0 2 up", "wheels 0 2 up", "wheels 0 0 down"):
+        panel["machine"].locator(f'[data-key="{key}"]').click()
+        panel.settle()
+    assert [place for place in range(24) if plant.switches[place]] == [8 + 3]
+    assert plant.numbers[0] == 209
+    assert panel["machine"].locator("svg [id$=wheel02]").text_content() == "2"
+
+
+def test_the_keyboard_goes_over_the_keys_and_presses_them(panel):
+    plant, keyboard = panel.lab.session.plant, panel.page.keyboard
+    panel["machine"].locator('[data-key="keys 1"]').focus()
+    keyboard.press("ArrowRight")
+    keyboard.press("ArrowDown")
+    keyboard.down("Space")
+    keyboard.down("Space")  # the key repeats
+    panel.settle()
+    assert plant.pressed == {"keys 7"}
+    keyboard.press("Tab")  # the focus leaves while it is down
+    panel.settle()
+    assert plant.pressed == set()
+
+
+def test_parts_that_the_panel_does_not_have_are_not_seen(panel):
+    assert panel["machine"].locator('[data-key="keypad A"]').is_hidden()
+    assert panel["machine"].locator('[data-key="wheels 1 0 up"]').is_hidden()
+    assert panel["machine"].locator('[data-key="arrows up"]').is_visible()
