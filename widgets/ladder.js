@@ -1,6 +1,6 @@
 // The ladder with the power flow of the last scan. Python lays it out for the width that there is and tells where every network
-// lies; the page tells which networks it looks at, about three screens of them, and gets their drawings and values. An element that
-// is chosen can be written and forced, can have a breakpoint, and tells where its device is used.
+// lies; the page tells which networks it looks at, about three screens of them, and gets their drawings and values. Drawings of networks
+// that it has looked at lately stay in the state; only those in and near sight are elements of the page. An element that is chosen can be written and forced, can have a breakpoint, and tells where its device is used.
 
 panels.ladder = (place, layout, page, view) => {
   const { section, body, sub } = frame(place, {
@@ -34,11 +34,12 @@ panels.ladder = (place, layout, page, view) => {
   for (const hand of ["wheel", "touchmove"]) body.addEventListener(hand, stay, { passive: true });
 
   const id = Math.random().toString(36).slice(2, 10);
-  const nets = new Map(); // number from 0 -> { node, markup }, of those that are drawn
+  const nets = new Map(); // number from 0 -> { node, markup }, of those that are elements of the page
   let drawing;
   let tops = [0]; // where each network begins, and where the last one ends
   let state = {};
-  let seen = null; // the networks that Python was told of
+  let near = null; // the first and last network of those in and near sight
+  let seen = ""; // the networks that Python was told of
   let goal = null; // { number, position } to go to as soon as it is drawn
   let watched;
   let refused = ""; // why there is no breakpoint where one was asked for
@@ -68,14 +69,29 @@ panels.ladder = (place, layout, page, view) => {
     nets.clear();
     tops = sheet.tops;
     outline = null;
-    for (const [entry, markup] of Object.entries(state)) if (markup && entry.startsWith("net.")) add(Number(entry.slice(4)), markup);
     if (kept && kept.number < count()) body.scrollTop = tops[kept.number] + kept.offset;
+    [near, seen, watched] = [null, "", undefined];
+    look();
     if (focused !== undefined) element(focused)?.focus({ preventScroll: true });
-    seen = null;
-    watched = undefined;
+  }
+  // Whether the state has the values of a network.
+  const within = (number, runs = []) => runs.some((first, at) => at % 2 === 0 && first <= number && number <= runs[at + 1]);
+  const alive = (number) => within(number, state.live);
+  // Makes elements of the networks in and near sight that are alive, and of no others; what has the focus stays. Says whether there are new ones.
+  function furnish() {
+    if (!near) return false;
+    for (const [number, { node }] of nets)
+      if (!(number >= near[0] && number <= near[1] && alive(number)) && !node.contains(document.activeElement)) remove(number);
+    let fresh = false;
+    for (let number = near[0]; number <= near[1]; number++) {
+      const markup = alive(number) && state[`net.${number}`];
+      if (!markup || nets.get(number)?.markup === markup) continue;
+      add(number, markup);
+      fresh = true;
+    }
+    return fresh;
   }
   function add(number, markup) {
-    if (nets.get(number)?.markup === markup) return;
     remove(number);
     const node = drawing.add(markup, [...nets].filter(([other]) => other > number).sort(([a], [b]) => a - b)[0]?.[1].node);
     nets.set(number, { node, markup });
@@ -111,13 +127,21 @@ panels.ladder = (place, layout, page, view) => {
     const [top, high] = [body.scrollTop, body.clientHeight];
     if (!drawing || !high || !count()) return;
     const first = numberAt(top);
-    const shown = [...nets.values()].find(({ node }) => Number(node.dataset.number) === first)?.node;
+    if (!near || numberAt(top - high / 2) < near[0] || numberAt(top + 1.5 * high) > near[1]) {
+      near = [numberAt(top - high), numberAt(top + 2 * high)];
+      if (furnish()) {
+        drawing.apply(state);
+        mark();
+        stop();
+      }
+    }
+    const shown = nets.get(first)?.node;
     write(where, `Network ${number(first + 1)} of ${number(count())}`);
     if (shown) where.title = shown.getAttribute("aria-label");
     view.ladderAt = anchor();
-    if (page.dead || (seen && numberAt(top - high / 2) >= seen[0] && numberAt(top + 1.5 * high) <= seen[1])) return;
-    seen = [numberAt(top - high), numberAt(top + 2 * high)];
-    page.say("ladder", "see", { view: id, first: seen[0], last: seen[1] });
+    if (page.dead || seen === String(near)) return;
+    seen = String(near);
+    page.say("ladder", "see", { view: id, first: near[0], last: near[1] });
   }
   const soon = () => (due ??= requestAnimationFrame(look));
   body.addEventListener("scroll", soon, { passive: true });
@@ -327,23 +351,15 @@ panels.ladder = (place, layout, page, view) => {
     apply(changes, now) {
       state = now;
       if (changes.sheet) draw(changes.sheet);
-      else
-        for (const [entry, markup] of Object.entries(changes)) {
-          if (!entry.startsWith("net.")) continue;
-          const number = Number(entry.slice(4));
-          if (markup) add(number, markup);
-          else if (!nets.get(number)?.node.contains(document.activeElement)) remove(number); // what has the focus stays
-        }
-      drawing?.apply(changes.sheet ? now : changes);
-      if (changes.breaks || changes.active || changes.sheet) mark();
-      else if (Object.keys(state.breaks ?? {}).length && Object.keys(changes).some((entry) => entry.startsWith("net."))) mark();
+      const fresh = furnish() || changes.sheet;
+      drawing?.apply(fresh ? now : changes);
+      if (fresh || changes.breaks || changes.active) mark();
       plate.show(now);
       if (changes.active) track();
       if (changes.hit && String(changes.hit) !== stoppedAt) go(...changes.hit, false);
       if ("hit" in changes) stoppedAt = String(changes.hit);
       stop();
       arrive();
-      if (changes.sheet) look();
     },
     rest(dead) {
       sizes.rest(dead);
@@ -352,11 +368,11 @@ panels.ladder = (place, layout, page, view) => {
       if (!dead) return soon();
       plate.close();
       leave();
-      seen = null;
-      // Only the networks that were looked at last are there.
-      const drawn = [...nets.keys()].sort((a, b) => a - b);
+      seen = "";
+      // Only the networks that were looked at lately are there; opened again, it shows those that were looked at last.
+      const there = Array.from({ length: count() }, (_, number) => number).filter((number) => within(number, state.looked));
       const [first, last] = [numberAt(body.scrollTop), numberAt(body.scrollTop + body.clientHeight)];
-      if (drawn.length && !drawn.some((number) => number >= first && number <= last)) body.scrollTop = tops[drawn[drawn.length >> 1]] - body.clientHeight / 2;
+      if (there.length && !there.some((number) => number >= first && number <= last)) body.scrollTop = tops[there[there.length >> 1]] - body.clientHeight / 2;
     },
     close() {
       page.say("ladder", "unsee", { view: id });

@@ -1,12 +1,13 @@
 """The ladder with the power flow of the last scan, laid out for the width that the page has.
 
-Of a large program the page gets the height of every network, and the drawings and values of those that it looks at.
+Of a large program the page gets the height of every network, and the drawings and values of those that it looks at. It keeps the
+drawings of those that it has looked at lately, so that going to and fro sends each of them once.
 """
 
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from ecsim.assembler.program import Instruction
 from ecsim.devices import Bits, Device
@@ -20,21 +21,27 @@ from .plate import Plated
 from .rig import PREFIX, Rig
 
 NARROWEST, WIDEST = 340, 1400
-WHOLE = 150  # a ladder of so many networks is drawn whole: following fast steps would else send it again and again
-FIRST = 12  # networks of a larger one that are there before a page has said what it looks at
+LIVE, KEPT = 150, 600  # of the networks that were looked at lately: so many have their values, so many their drawings in the page
+FIRST = 12  # networks of a ladder of more than `LIVE` that are there before a page has said what it looks at
 MOST_LOOKS, MOST_NETWORKS = 4, 300  # views at a time, and what one of them may look at
 MOST_PLACES = 200  # of a device, told at once
 
 
 class Ladder(Plated):
-    """The whole program as a ladder. A frame has an entry "net.<n>" for the drawing of each network that some view looks at."""
+    """The whole program as a ladder.
+
+    A frame has an entry "net.<n>" for the drawing of each network that was looked at lately; "live" tells which of them have their
+    values in the frame, "looked" which are looked at now, as [first, last, first, last ...].
+    """
 
     key = "ladder"
 
     def __init__(self, rig: Rig):
         super().__init__(rig)
         self.drawing = ladder(rig.program)
-        self._looks: dict[str, range] = {"": range(len(self.drawing) if len(self.drawing) <= WHOLE else FIRST)}
+        whole = range(len(self.drawing)) if len(self.drawing) <= LIVE else None
+        self._looks: dict[str, range] = {"": range(FIRST) if whole is None else whole}
+        self._kept = dict.fromkeys(whole or ())  # the networks that were looked at, the latest last
         self._lay_out(NARROWEST)
         self.least = int(self.sheet.width)  # the program may need more than was asked for
         self.first = [entry.words[0].position for entry in self.drawing.entries]
@@ -64,14 +71,21 @@ class Ladder(Plated):
 
     def frame(self):
         plc, hit = self.rig.plc, self._hit
-        shown = sorted(set().union(*self._looks.values()))
-        entries = {"sheet": self._places, "active": self.rig.active(), **self.plates()}
-        for number in shown:
+        looked = set().union(*self._looks.values())
+        live = sorted(looked.union(list(self._kept)[-LIVE:]))
+        entries = {
+            "sheet": self._places,
+            "active": self.rig.active(),
+            "live": _runs(live),
+            "looked": _runs(sorted(looked)),
+            **self.plates(),
+        }
+        for number in (*self._kept, *live):
             if number not in self._networks:
                 self._networks[number] = self.sheet.network(number, PREFIX)
             entries[f"net.{number}"] = self._networks[number]
-        entries |= self.sheet.state(plc, shown)
-        entries["breaks"] = self._marks(shown, entries)
+        entries |= self.sheet.state(plc, live)
+        entries["breaks"] = self._marks(live, entries)
         entries["hit"] = self._where(self._set_at[hit]) if hit in self._set_at else None
         return entries
 
@@ -82,16 +96,19 @@ class Ladder(Plated):
         width = min(max(int(width), NARROWEST), WIDEST)
         if width != self.width:
             self._lay_out(width)
+            if len(self.drawing) > LIVE:
+                self._kept.clear()  # other drawings; those that nobody looks at can wait
 
     def on_see(self, view, first, last):
         """A view looks at the networks from `first` to `last`, counted from 0."""
-        if len(self.drawing) <= WHOLE:
-            return
         first = min(max(int(first), 0), len(self.drawing))
         looks = {name: numbers for name, numbers in self._looks.items() if name not in ("", view)}
         while len(looks) >= MOST_LOOKS:  # a page that went away leaves its own behind
             del looks[next(iter(looks))]
-        self._looks = looks | {view: range(first, min(int(last) + 1, len(self.drawing), first + MOST_NETWORKS))}
+        now = range(first, min(int(last) + 1, len(self.drawing), first + MOST_NETWORKS))
+        self._looks = looks | {view: now}
+        kept = [*(number for number in self._kept if number not in now), *now]
+        self._kept = dict.fromkeys(kept[-KEPT:])
 
     def on_unsee(self, view):
         """A view is no more."""
@@ -203,6 +220,17 @@ class Ladder(Plated):
                 names = (entry.labels.of(word, place).name for place in range(len(word.operands)))
                 if text == str(word.step) or text in f"{word} {' '.join(names)} {word.comment}".lower():
                     yield self._place(word.position, f"{word}{f' // {word.comment}' if word.comment else ''}")
+
+
+def _runs(numbers: Iterable[int]) -> list[int]:
+    """Rising numbers as runs of neighbours: [first, last, first, last ...]."""
+    runs: list[int] = []
+    for number in numbers:
+        if runs and number == runs[-1] + 1:
+            runs[-1] = number
+        else:
+            runs += [number, number]
+    return runs
 
 
 def _devices(instruction: Instruction) -> list[tuple[Device | Bits, OperandSpec]]:

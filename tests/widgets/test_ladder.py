@@ -1,9 +1,13 @@
 """The ladder's Python side: what an element speaks of, where that is used, and its plate."""
 
+import json
 from itertools import pairwise
 
 import pytest
+from ecsim_widgets import ladder as module
 from ecsim_widgets.ladder import Ladder
+from ecsim_widgets.panel import Panel
+from ecsim_widgets.stream import Stream
 
 PROGRAM = """VAR_GLOBAL
   Start AT X5      // start button
@@ -99,15 +103,61 @@ def test_a_frame_has_the_networks_that_are_looked_at_and_no_others(large):
 def test_two_views_get_what_both_look_at_until_one_goes(large):
     large.receive("see", {"view": "a", "first": 0, "last": 1})
     large.receive("see", {"view": "b", "first": 398, "last": 500})
-    assert drawn(large.frame()) == [0, 1, 398, 399]
+    assert large.frame()["looked"] == [0, 1, 398, 399]
     large.receive("unsee", {"view": "a"})
-    assert drawn(large.frame()) == [398, 399]
+    assert large.frame()["looked"] == [398, 399]
 
 
 def test_views_that_went_away_unseen_are_forgotten(large):
     for number in range(9):
         large.receive("see", {"view": f"v{number}", "first": number, "last": number})
-    assert drawn(large.frame()) == [5, 6, 7, 8]
+    assert large.frame()["looked"] == [5, 8]
+
+
+def alive(frame):
+    """The networks whose coils have their state in a frame."""
+    return [n for n in range(400) if f"e{3 * n + 2}:class" in frame]
+
+
+def test_what_was_looked_at_keeps_its_drawing_longer_than_its_values(large, monkeypatch):
+    monkeypatch.setattr(module, "LIVE", 4)
+    monkeypatch.setattr(module, "KEPT", 6)
+    for first in (10, 20, 30, 40):
+        large.receive("see", {"view": "a", "first": first, "last": first + 1})
+    frame = large.frame()
+    assert drawn(frame) == [20, 21, 30, 31, 40, 41]
+    assert alive(frame) == [30, 31, 40, 41]
+    assert (frame["live"], frame["looked"]) == ([30, 31, 40, 41], [40, 41])
+    large.receive("see", {"view": "a", "first": 20, "last": 21})  # back again: the oldest are now others
+    frame = large.frame()
+    assert (drawn(frame), alive(frame)) == ([20, 21, 30, 31, 40, 41], [20, 21, 40, 41])
+
+
+def test_a_view_that_stands_keeps_its_values_however_far_another_goes(large, monkeypatch):
+    monkeypatch.setattr(module, "LIVE", 4)
+    large.receive("see", {"view": "a", "first": 7, "last": 8})
+    for first in range(100, 200, 2):
+        large.receive("see", {"view": "b", "first": first, "last": first + 1})
+    assert {7, 8} <= {*alive(large.frame())}
+
+
+def test_following_fast_steps_sends_each_drawing_once(large):
+    panel = Panel(large.rig, [Ladder])
+    sent, now_s = [], iter(range(10**6))
+    panel.stream, panel.send = Stream(now_s.__next__), sent.append
+    panel._receive(panel, {"hello": True}, [])
+    sent.clear()
+    for update in range(200):  # ten seconds: from one end of the program to the other with every update, as a ladder that follows does
+        first = 20 if update % 2 else 360
+        panel.rig.put("X3", update % 2)
+        panel._receive(panel, {"part": "ladder", "do": "see", "view": "a", "first": first, "last": first + 26}, [])
+        panel.rig.session.scan()
+    assert len(sent) >= 200
+    entries = [entry for message in sent for entry in message["state"].get("ladder", {}).items()]
+    drawings = [key for key, markup in entries if key.startswith("net.") and markup]
+    assert sorted(drawings) == sorted(f"net.{number}" for first in (20, 360) for number in range(first, first + 27))
+    octets = sum(len(json.dumps(message)) for message in sent)
+    assert octets < 10 * 100_000
 
 
 def test_a_view_cannot_ask_for_all_of_a_large_program(large):

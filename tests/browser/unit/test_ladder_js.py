@@ -160,6 +160,21 @@ def test_what_is_scrolled_to_is_alive(large):
     expect(element(large, 3 * number + 2)).to_have_class("coil flow" if number % 8 != 7 else "coil open")
 
 
+def test_what_was_seen_before_is_there_at_once_and_as_it_is_now(large):
+    scroll(large, 100_000)
+    there = visible(large)
+    number = next(n for n in there if n % 8 == 3)
+    scroll(large, 0)
+    large.lab.plc["X3"] = 1
+    large.lab.session.scan(2)
+    large.settle()
+    assert drawn(large)[-1] < 40  # what is far away is no element of the page
+    large.js("() => { document.querySelector('.ladder-scroll').scrollTop = 100_000; }")
+    large.frame()  # the kernel has not been asked yet
+    assert visible(large) == there
+    expect(element(large, 3 * number + 2)).to_have_class("coil flow")
+
+
 def test_a_place_that_is_not_drawn_yet_is_gone_to(large):
     large["find"].fill("m1500")
     large.settle()
