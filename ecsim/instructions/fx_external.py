@@ -1,7 +1,7 @@
 """FNC 52, 70 to 79, 85, 86 of H1U and H2U: keys, switches, displays, a printer, special modules and potentiometers at the terminals.
 
 What is scanned takes its time in scans or, where that is said, in milliseconds; outputs that lead one digit or row after the
-other are part of the output image, and the answer at the inputs is seen in the scan after it.
+other are part of the output image, and the answer at the inputs is seen in the scan after it, behind the filter later.
 """
 
 from ..errors import NO_ANSWER, NO_BUFFER, NO_MODULE, OPERAND, Fault
@@ -28,20 +28,21 @@ def mtr(flow, s, target, n, machine, now, state):
     """Read N rows of eight switches: each output from D1 on is ON for 20 ms, then the inputs from S on go to the bits of its row.
 
     The rows stand ten bits apart from D2 on (D2, D2+10 ...; eight among Y, which is 10 in octal). M8029 tells of the last row.
+    An output is ON for two scans at least: the inputs answer after the first one, and the filter needs its time.
     """
     if not flow:
         return [False] * n, False, False
-    row, since = state or (0, now)
-    done = False
-    if state and now - since >= ROW_US:
+    row, since, put_out = state or (0, now, False)
+    done, waited = False, state is not None
+    if put_out and now - since >= ROW_US:
         apart = 8 if target.area == "Y" else 10
         first = target.number + apart * row
         bits = machine.memory.bits(target.area)
         if first + 8 > len(bits):
             raise Fault(OPERAND)
         bits[first : first + 8] = s
-        row, since, done = (row + 1) % n, now, row + 1 == n
-    return [each == row for each in range(n)], done, (row, since)
+        row, since, waited, done = (row + 1) % n, now, False, row + 1 == n
+    return [each == row for each in range(n)], done, (row, since, waited)
 
 
 def _typed(number, key, digits):
@@ -77,14 +78,18 @@ def dtky(flow, s, d1, state):
 
 
 def _sixteen_keys(flow, s, d2, d3, hexadecimal, state, digits):
-    """One scan of HKY: `state` is the scan of eight, the keys found so far in this round, the key held in the last one."""
+    """One scan of HKY: `state` is the scan of eight, the keys found so far in this round, the key held in the last one.
+
+    A row is led for two scans and read in the scan after them, which leads the next one: the filter has a whole scan.
+    """
     if not flow:
         return [False] * 4, d2, [False] * 8, False, False
     scan, found, held = state or (0, (), None)
-    row, reading = divmod(scan, 2)
-    if reading:
-        found += tuple(4 * row + column for column in range(4) if s[column])
-    done = scan == 7
+    row, waiting = divmod(scan, 2)
+    done = False
+    if state and not waiting:
+        found += tuple(4 * ((row - 1) % 4) + column for column in range(4) if s[column])
+        done = row == 0
     if done:
         key = held if held in found else min(found, default=None)
         if key is not None and key != held:

@@ -2,6 +2,7 @@
 
 import re
 import xml.etree.ElementTree as xml
+from dataclasses import dataclass
 
 import pytest
 from ecsim_exercises.operator_panel import PICTURE, OperatorPanel
@@ -99,6 +100,46 @@ def test_thumbwheels_are_read_with_dsw(sets, numbers):
     panel.hold("wheels 0 3 down")
     wait(session, 1.0)
     assert plc["D0"] == 1057
+
+
+@dataclass
+class Elsewhere:
+    """A panel whose terminals are wired to others."""
+
+    panel: OperatorPanel
+    places: dict[str, str]  # the panel's terminal -> the PLC's
+
+    def __post_init__(self):
+        self.wiring = {self.places[device]: point for device, point in self.panel.wiring.items()}
+
+    def step(self, seconds, outputs):
+        said = self.panel.step(seconds, {device: outputs[place] for device, place in self.places.items() if place in outputs})
+        return {self.places[device]: level for device, level in said.items()}
+
+
+@pytest.mark.parametrize("scan_ms", [10, 15, 20, 40])
+def test_a_keypad_and_switches_are_read_behind_the_filter_in_constant_scans(scan_ms):
+    program = f"LD M8000\nMOV K{scan_ms} D8039\nLD M8000\nOUT M8039\nLD M8000\n"
+    rows = {f"Y{14 + place}": f"Y{place}" for place in range(4)}
+    panel = OperatorPanel(("keypad",))
+    plc = Plc("H2U")
+    plc.load(program + "HKY X0 Y0 D0 M0")
+    session = Session(plc, Elsewhere(panel, {f"X{20 + place}": f"X{place}" for place in range(4)} | rows), speed=None, name="keypad")
+    plc.run()
+    panel.press("2057", seconds=1.0)
+    wait(session, 5.0)
+    assert plc["D0"] == 2057
+
+    panel = OperatorPanel(("switches",))
+    plc = Plc("H2U")
+    plc.load(program + "MTR X0 Y0 M30 K3")
+    rows = {f"Y{20 + place}": f"Y{place}" for place in range(3)}
+    session = Session(plc, Elsewhere(panel, {f"X{40 + place}": f"X{place}" for place in range(8)} | rows), speed=None, name="switches")
+    plc.run()
+    for place in ((0, 1), (1, 7), (2, 0), (2, 5)):
+        panel.switch(*place)
+    wait(session, 1.0)
+    assert [place for place in range(30) if plc[f"M{30 + place}"]] == [1, 17, 20, 25]
 
 
 # -- display and printer --------------------------------------------------------------------------------------------
