@@ -10,11 +10,13 @@ from ..errors import EcsimError
 from ..plc import Plc
 from ..session import Session
 from .choices import Choice, chosen
+from .rest import Rest
 from .signals import Condition, Signal, compressed, condition, intervals
 
 if TYPE_CHECKING:
     from .exercise import Exercise
 
+QUIET = 8
 STEP = "Step"  # the lane of the active steps, which charts show and rules leave alone
 
 
@@ -150,6 +152,8 @@ class Run:
         self._releases: list[tuple[int, tuple[str, ...]]] = []
         self._journal: list[tuple[int, tuple]] = []  # scan -> where the script was before it
         self._until: int | None = None
+        self._rest = Rest(plc, plant)
+        self._quiet, self._ask_at = 0, QUIET  # scans without a change, and from how many on it is asked whether scans may be passed over
         plc.run()
         self._plan()
         self._act(0)
@@ -184,14 +188,18 @@ class Run:
         self._stop_at = scan if cut else self.end
         while plc.scans - first < self._stop_at:
             step()
+            if self._quiet >= self._ask_at:
+                self._pass_over()
         return Trace(self.period_s, self._stop_at, self.scans, self.rows, self.places, self.names, self.steps, cut)
 
     def sample(self) -> None:
         """After each scan: note what has changed, and let the operator act before the next one."""
         now = tuple([look(source) for look, source in self._looks])
         done = self.plc.scans - self._first
+        self._quiet += 1
         if now != self._last:
             self._last = now
+            self._quiet, self._ask_at = 0, QUIET
             self.scans.append(done - 1)
             self.rows.append(now)
             if self._due is None and self._position < len(self._script) and self._holds(self._script[self._position].when):
@@ -201,6 +209,19 @@ class Run:
                 self._stop_at = min(self._stop_at, self._until)
         if done == self._due or (self._releases and done >= self._releases[0][0]):
             self._act(done)
+
+    def _pass_over(self) -> None:
+        """Nothing that is noted has changed for some scans: perhaps nothing will for many more."""
+        done = self.plc.scans - self._first
+        ends = [self._stop_at, *([self._due] if self._due is not None else []), *([self._releases[0][0]] if self._releases else [])]
+        count = self._rest.scans(min(ends) - done - 1)
+        if count:
+            self._rest.pass_over(count)
+            if self.plant is not None:
+                self.plant.step(count * self.period_s, self.session._outputs)
+            self._quiet = 0
+        elif self._quiet > self._ask_at:  # asked twice, one scan after the other
+            self._ask_at = 2 * self._quiet
 
     def _scans(self, seconds: float) -> int:
         return round(seconds / self.period_s)

@@ -110,6 +110,11 @@ class Mixer(Machine):
         """How many batches have left."""
         return len(self.batches)
 
+    @property
+    def still(self) -> float:
+        """For how many seconds nothing changes that a sensor tells: while nothing flows, and but for the stirrer's turns."""
+        return 0.0 if self._moves or any(self._flows) else self._steady_s
+
     def step(self, seconds: float, outputs: Mapping[str, int]) -> dict[str, int]:
         """Let `seconds` pass under the outputs Y0 to Y5; returns the switches X0 to X12 and the weight D0 in whole kg."""
         super().step(seconds, outputs)
