@@ -1,4 +1,4 @@
-"""ecsim: Emerson EC10 and EC20 PLCs, simulated in exact time."""
+"""ecsim: Emerson EC10 and EC20, Inovance H1U and H2U PLCs, simulated in exact time."""
 
 from pathlib import Path
 

@@ -37,7 +37,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="ecsim", description="A simulator of Emerson EC10 and EC20 PLCs.")
+    parser = argparse.ArgumentParser(prog="ecsim", description="A simulator of Emerson EC10 and EC20, Inovance H1U and H2U PLCs.")
     parser.add_argument("--version", action="version", version=f"ecsim {__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     cases = commands.add_parser("cases", help="run conformance cases", description="Run conformance cases from JSON files.")

@@ -151,6 +151,12 @@ ANSWERS = {
         "Not yet: nobody notices that the motor does not hold itself",
         "Right: all three are found",
     ),
+    "23-another-plc": (
+        "answer",
+        "LDP X0\nINC D0\nLD>= D0 K4\nOUT Y0\nLD Y0\nOUT T0 K20\nLD Y0\nANI T0\nOUT Y1\nLD X1\nRST D0",
+        "Not yet: at pallet 4 of lorry 1 the horn Y1 is 0, on EC20 it is 1",
+        "Right: nobody at the ramp notices",
+    ),
 }
 
 
