@@ -16,6 +16,7 @@ from ecsim.grading import find_exercise
 from ecsim.grading.classroom import grade_class
 from ecsim.grading.edits import edits
 from ecsim.grading.sandbox import Judge, Submission
+from ecsim.models import model_in
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "performance.md"
 BEGIN, END = "<!-- class -->", "<!-- /class -->"
@@ -26,7 +27,8 @@ REFUSED = ("LD X0\nOUT Q0\n", "import os\n", "LD X0\n", "STL S0\nSTL\n")
 def submissions(exercise, count):
     """Name -> program: a third right, a third slips of the hand, the rest mistakes, the starter, loops and what does not compile."""
     chance = random.Random(1)
-    right, wrong = list(exercise.solutions.values()), [text for text, _ in exercise.mistakes.values()]
+    right = [text for name, text in exercise.solutions.items() if model_in(name) is None]
+    wrong = [text for text, _ in exercise.mistakes.values()]
     slips = [edit.text for edit in edits(exercise.solution)]
     kinds = [
         lambda: chance.choice(right), lambda: chance.choice(slips), lambda: chance.choice(wrong), lambda: chance.choice(right),

@@ -176,10 +176,13 @@ class Session:
         for number in self._inputs.values():
             self.plc.inputs.waiting.pop(number, None)
 
-    def _enter(self, sensors: dict[str, int], now: int) -> None:
-        """Put what the plant says on the inputs, and into the registers that it writes."""
-        plc = self.plc
-        for name, level in self.sensors.pass_on(sensors, now).items():
+    def _enter(self, sensors: dict[str, int], now: int, last: dict[str, int] | None = None) -> None:
+        """Put what the plant says on the inputs, and into the registers that it writes; where it said the same the last time, that stands."""
+        plc, said = self.plc, self.sensors.pass_on(sensors, now)
+        last = last if last and said is sensors else {}
+        for name, level in said.items():
+            if last.get(name) == level:
+                continue
             if name in self._inputs:
                 plc.inputs.set(self._inputs[name], level, now)
             elif name in self._signals:
@@ -275,8 +278,8 @@ class Session:
                 self._outputs = self._outputs | {name: self._signals[name].get() for name in self._analog_outputs}
             sensors = self.plant.step((now - before) / 1e6, self._outputs)
             if sensors != self._last_sensors:
-                self._last_sensors = sensors
-                self._enter(sensors, now)
+                last, self._last_sensors = self._last_sensors, sensors
+                self._enter(sensors, now, last)
         self._look_at_steps()
         if self._fault_list[self._fault_number] is not self._fault:
             self._note_fault()

@@ -144,6 +144,7 @@ class Run:
         self._first = plc.scans
         self._generation = plc.memory.generation
         self._look_at(exercise)
+        self._conditions: dict[str, tuple[Callable, list[tuple[int, int]]]] = {}  # text -> what it is, where its lanes stand
         self.scans: list[int] = []
         self.rows: list[tuple] = []
         self._last: tuple | None = None
@@ -240,15 +241,18 @@ class Run:
         """Whether a condition over lanes holds now."""
         if text is None or self._last is None:
             return False
-        asked: Condition = condition(text)
-        return bool(asked.expression(*map(self._value, asked.names)))
+        if text not in self._conditions:
+            asked: Condition = condition(text)
+            self._conditions[text] = asked.expression, [self._place(name) for name in asked.names]
+        (expression, places), last = self._conditions[text], self._last
+        return bool(expression(*[last[group][place] for group, place in places]))
 
-    def _value(self, name: str) -> Any:
+    def _place(self, name: str) -> tuple[int, int]:
+        """Where a lane stands in a row."""
         lane = self.names.get(name, name)
         if lane not in self.places:
             raise EcsimError(f"the scenario {self.scenario.name} asks for {name!r}; there are {', '.join([*self.names, *self.places])}")
-        group, place = self.places[lane]
-        return self._last[group][place]
+        return self.places[lane]
 
     def _act(self, done: int) -> None:
         """What the operator does before the scan with this number."""

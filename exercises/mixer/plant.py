@@ -97,6 +97,7 @@ class Mixer(Machine):
     _rates: tuple[float, ...] = field(default=(0.0,) * 6, init=False, repr=False)  # of valves and stirrer, a second
     _holds_batch: bool = field(default=False, init=False, repr=False)
     _moves: bool = field(default=False, init=False, repr=False)  # whether a valve does
+    _feeds: bool = field(default=False, init=False, repr=False)  # whether something comes in
     _flows: tuple[float, ...] = field(default=(0.0,) * 5, init=False, repr=False)  # kg/s of the feeds and the drain
     _bends: tuple[float, ...] = field(default=(0.0,) * 5, init=False, repr=False)  # and how they change, kg/s²
 
@@ -112,8 +113,10 @@ class Mixer(Machine):
 
     @property
     def still(self) -> float:
-        """For how many seconds nothing changes that a sensor tells: while nothing flows, and but for the stirrer's turns."""
-        return 0.0 if self._moves or any(self._flows) else self._steady_s
+        """For how many seconds nothing changes that a sensor tells: valves and weight stand, whatever runs through and turns."""
+        flows = self._flows
+        stands = not any(flows) or (not self.weight and sum(flows[:4]) <= flows[4])
+        return self._steady_s if stands and not self._moves else 0.0
 
     def step(self, seconds: float, outputs: Mapping[str, int]) -> dict[str, int]:
         """Let `seconds` pass under the outputs Y0 to Y5; returns the switches X0 to X12 and the weight D0 in whole kg."""
@@ -136,6 +139,7 @@ class Mixer(Machine):
         self._rates, self._moves = tuple(rates), any(rates[:5])
         self._flows = tuple([rate * place for rate, place in zip((*RATES, DRAIN), places, strict=True)])
         self._bends = tuple([rate * change for rate, change in zip((*RATES, DRAIN), rates, strict=False)])
+        self._feeds = any(self._flows[:4]) or any(self._bends[:4])
         switches = {}
         for (opened, closed), place, rate in zip(ENDS, places, rates, strict=False):
             switches[opened], switches[closed] = int(place == 1 and not rate), int(place == 0 and not rate)
@@ -154,7 +158,7 @@ class Mixer(Machine):
     def _flow(self, seconds):
         flows, bends = self._flows, self._bends
         half = seconds * seconds / 2
-        if any(flows[:4]) or any(bends[:4]):
+        if self._feeds:
             added = [flow * seconds + bend * half for flow, bend in zip(flows, bends, strict=True)]
             self.dosed = tuple([dosed + amount for dosed, amount in zip(self.dosed, added, strict=False)])
             if added[1] or added[2] or added[3]:
