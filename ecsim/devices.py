@@ -147,6 +147,7 @@ class Syntax:
     pointers: dict[str, str] = field(default_factory=dict)  # kind of operand -> the letter of its pointers: LABEL -> P
     end_label: int | None = None  # the label that stands for the end of the program
     indexed_constants: bool = False
+    signed_decimals: bool = False  # 32767 is the greatest of 16 bits; what is above is written in hexadecimal
     _known: dict[str, Operand] = field(default_factory=dict, compare=False, repr=False)
 
     def parse(self, text: str) -> Operand | None:

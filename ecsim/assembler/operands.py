@@ -195,7 +195,9 @@ class Resolver:
             return
         if not isinstance(value, int):
             raise Refused(f"{spec.name} = {shown(text)} is no whole number", f"{spec.name} is {spec.type.name}", "3.3.3")
-        fits = -(1 << spec.type.bits - 1) <= value < 1 << spec.type.bits
+        signed = self.model.syntax.signed_decimals and not constant.unsigned
+        least, most = -(1 << spec.type.bits - 1), (1 << spec.type.bits - signed) - 1
+        fits = least <= value <= most
         if spec.range:
             low, high = spec.range
             if not (fits and low <= wrap(value, spec.type) <= high):
@@ -203,9 +205,11 @@ class Resolver:
                     f"{spec.name} = {shown(text)} is out of range", f"{spec.name} goes from {pointer}{low} to {pointer}{high}", ""
                 )
         elif not fits:
-            low, high = -(1 << spec.type.bits - 1), (1 << spec.type.bits) - 1
+            more = f", or to H{(1 << spec.type.bits) - 1:X} in hexadecimal" if signed else ""
             raise Refused(
-                f"{spec.name} = {shown(text)} does not fit into {spec.type.bits} bits", f"constants go from {low} to {high} here", "3.3.3"
+                f"{spec.name} = {shown(text)} does not fit into {spec.type.bits} bits",
+                f"constants go from {least} to {most} here{more}",
+                "3.3.3",
             )
 
     def _digits(self, spec: OperandSpec, bits: Bits, text: str) -> None:

@@ -114,6 +114,12 @@ class _Structure:
         if check:
             check(instruction)
             return
+        used = self.used and mnemonic != "NOP" and not self.kept  # the rung's output stands before it
+        if mnemonic in self.model.unconditional and (used or not (self.blocks or self.kept or self.bus)):
+            self._finish(index)
+            self.used = True
+            self._finish(index + 1)
+            return
         if not self._flow(instruction):
             pass
         elif self.bus and mnemonic in ("EU", "ED", "INV", "NOP"):
@@ -417,13 +423,21 @@ class _Transitions:
 
     def _check_conditions(self, transitions: list) -> None:
         """4.1.1 of the FX family: how many ways a branch has, and what may stand in the conditions of branches and joins."""
+        most, most_of_all = self.model.limits["ways"], self.model.limits["ways of an initial step"]
+        initial, side_by_side = None, 1  # the initial step of a flow, and the ways that its branches have made of one
         for _, region in self._sections():
+            if region.number < self.initial_steps:
+                initial, side_by_side = region, 1
             ways = [instruction for source, instruction, *_ in transitions if source is region]
             if not ways:
                 continue
-            most = self.model.limits["ways of an initial step" if region.number < self.initial_steps else "ways"]
             if len(ways) > most:
-                self.report(ways[most], f"{len(ways)} ways lead on from S{region.number}", f"at most {most}", "7.4.1")
+                self.report(ways[most], f"{len(ways)} ways lead on from S{region.number}", f"at most {most} in one branch", "7.4.1")
+            lines = [way for way in ways if way.mnemonic == "SET"]  # the others jump
+            before, side_by_side = side_by_side, side_by_side + max(len(lines) - 1, 0)
+            if initial and before <= most_of_all < side_by_side:
+                hint = f"at most {most_of_all} belong to one initial step"
+                self.report(lines[-1], f"the branches behind S{initial.number} have {side_by_side} ways", hint, "7.4.1")
             if len(region.steps) > 1 and len(ways) > 1:
                 hint = "lead to one empty step, and branch from that"
                 self.report(ways[1], f"{ways[1]} branches straight from a join", hint, "7.4.1")

@@ -65,7 +65,7 @@ H2U = Model(
     areas=_areas(m=3072),
     syntax=Syntax(
         areas=_BITS | set("TCDVZ"), bit_areas=_BITS, index_areas=frozenset("VZ"), constant=fx_constant,
-        pointers=fx_spelling.POINTERS, end_label=fx_spelling.END_LABEL, indexed_constants=True,
+        pointers=fx_spelling.POINTERS, end_label=fx_spelling.END_LABEL, indexed_constants=True, signed_decimals=True,
     ),
     timer_bases=((0, 199, 100_000), (200, 245, 10_000), (246, 249, 1_000), (250, 255, 100_000)),
     fast_timers=(246, 249),
@@ -102,6 +102,7 @@ H2U = Model(
     foreign=fx_spelling.FOREIGN,
     levels=True,
     strict_steps=True,
+    unconditional=frozenset({"EI", "DI", "NOP"}),
     overlap=True,
     pulse_suffix="P",
     clears_at_stop=True,

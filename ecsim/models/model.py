@@ -204,6 +204,7 @@ class Model:
     foreign: dict[str, str] = field(default_factory=dict)  # a word of others -> what to write here
     sections: dict[str, str] = field(default_factory=dict)  # section of EC's manual -> the family's on the same; empty: the same manual
     levels: bool = False  # MC has a level: the end of one ends those inside it
+    unconditional: frozenset[str] = frozenset()  # stand on the left bus, each a rung of its own, unless contacts are right before
     strict_steps: bool = False  # what may stand in the conditions of transitions where ways part or join is limited
     overlap: bool = False  # in the scan of a transition the step that is left stays ON beside the one that begins
     pulse_suffix: str = ""  # behind a mnemonic: executed only in the scan in which its flow rises

@@ -262,7 +262,8 @@ def constant(constant: Constant, target: Model, real: bool) -> str:
     if target.family == "FX":
         if real or isinstance(value, float):
             return f"E{value!r}".replace("e", "") if "e" not in repr(value) else f"E{value:.9f}".rstrip("0")
-        return f"H{value:X}" if constant.unsigned else f"K{value}"
+        above = 0x7FFF < value <= 0xFFFF or value > 0x7FFF_FFFF  # what decimal constants do not reach
+        return f"H{value:X}" if constant.unsigned or above else f"K{value}"
     if real or isinstance(value, float):
         return repr(float(value))
     return f"16#{value:X}" if constant.unsigned else str(value)

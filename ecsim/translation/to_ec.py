@@ -64,6 +64,7 @@ class ToEC:
     def _unit(self, unit: Unit) -> list[Line]:
         lines: list[Line] = []
         instructions = unit.instructions
+        starts = {network.start for network in unit.networks if not network.region}
         for place, instruction in enumerate(instructions):
             if instruction.mnemonic in ENDS:
                 if any(each.mnemonic not in ENDS for each in instructions[place + 1 :]) and instruction.mnemonic != "FX:I":
@@ -81,6 +82,8 @@ class ToEC:
             except Refusal as refusal:
                 self.text.refuse_at(instruction, refusal)
                 new = []
+            if new and place in starts and instruction.mnemonic in self.places.source.unconditional:
+                new.insert(0, Line("LD", ("SM0",), instruction.line))
             if new and unit.titles.get(place):
                 new[0].title = unit.titles[place]
             lines += new

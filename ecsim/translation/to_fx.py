@@ -127,6 +127,9 @@ class ToFX:
                     new = []
                 else:
                     new = self._translated(instruction)
+                    alone = new and new[0].mnemonic in ("EI", "DI")
+                    if alone and instructions[place - 1].definition.outputs and not branches:
+                        new.insert(0, Line("AND", ("M8000",), instruction.line))  # keeps it in its rung
             except Refusal as refusal:
                 self.text.refuse_at(instruction, refusal)
                 new = []

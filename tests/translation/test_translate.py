@@ -122,13 +122,23 @@ def test_subroutines_become_labels_and_back():
     assert "SUBROUTINE SBR_P0" in to_ec20("\n".join(fx))
 
 
+def test_ei_on_the_bus_gets_a_contact():
+    ec = to_ec20("LD X0\nOUT Y0\nEI\nFEND\nI001\nLD M8000\nINC D0\nIRET\nEND")
+    assert ec[ec.index("OUT Y0") :][:3] == ["OUT Y0", "LD SM0", "EI"]
+
+
+def test_decimal_constants_beyond_their_sign_are_written_in_hexadecimal():
+    fx = to_h2u("LD SM0\nMOV 40000 D0\nMOV 32767 D1\nMOV -32768 D2\nWAND 65535 D3 D4")
+    assert fx[1:] == ["MOV H9C40 D0", "MOV K32767 D1", "MOV K-32768 D2", "WAND HFFFF D3 D4"]
+
+
 def test_interrupts_of_inputs_and_timers():
     text = (
         "PROGRAM MAIN\nLD SM1\nSET SM42\nMOV 50 SD66\nSET SM66\nEI\nEND_PROGRAM\n"
         "INTERRUPT A EVENT 2\nLD SM0\nINC D0\nEND_INTERRUPT\nINTERRUPT B EVENT 26\nLD SM0\nINC D1\nEND_INTERRUPT"
     )
     fx = to_h2u(text)
-    assert fx[:4] == ["LD M8002", "RST M8052", "RST M8056", "EI"]
+    assert fx[:5] == ["LD M8002", "RST M8052", "RST M8056", "AND M8000", "EI"]
     assert {"I201", "I650", "IRET"} <= set(fx)
     back = to_ec20("\n".join(fx))
     assert {"SET SM42", "SET SM66", "MOV 50 SD66", "INTERRUPT INT_I201 EVENT 2", "INTERRUPT INT_I650 EVENT 26"} <= set(back)
