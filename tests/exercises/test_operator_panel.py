@@ -13,8 +13,8 @@ from ecsim.session import Session
 
 
 def operate(program, *parts, **choices):
-    """An H2U with a program and a panel of these parts at its terminals, in RUN."""
-    plc = Plc("H2U")
+    """An H2U with scans of 1 ms, a program and a panel of these parts at its terminals, in RUN."""
+    plc = Plc("H2U", scan_ms=1)
     plc.load("LD M8000\n" + program)
     panel = OperatorPanel(parts, **choices)
     session = Session(plc, panel, speed=None, name="panel")
@@ -122,7 +122,7 @@ def test_a_keypad_and_switches_are_read_behind_the_filter_in_constant_scans(scan
     program = f"LD M8000\nMOV K{scan_ms} D8039\nLD M8000\nOUT M8039\nLD M8000\n"
     rows = {f"Y{14 + place}": f"Y{place}" for place in range(4)}
     panel = OperatorPanel(("keypad",))
-    plc = Plc("H2U")
+    plc = Plc("H2U", scan_ms=1)
     plc.load(program + "HKY X0 Y0 D0 M0")
     session = Session(plc, Elsewhere(panel, {f"X{20 + place}": f"X{place}" for place in range(4)} | rows), speed=None, name="keypad")
     plc.run()
@@ -131,7 +131,7 @@ def test_a_keypad_and_switches_are_read_behind_the_filter_in_constant_scans(scan
     assert plc["D0"] == 2057
 
     panel = OperatorPanel(("switches",))
-    plc = Plc("H2U")
+    plc = Plc("H2U", scan_ms=1)
     plc.load(program + "MTR X0 Y0 M30 K3")
     rows = {f"Y{20 + place}": f"Y{place}" for place in range(3)}
     session = Session(plc, Elsewhere(panel, {f"X{40 + place}": f"X{place}" for place in range(8)} | rows), speed=None, name="switches")
@@ -272,7 +272,8 @@ def test_a_key_from_the_session_comes_again_on_the_way_through_the_past():
     session.post(lambda plc: session.plant.press("8"))
     wait(session, 0.3)
     scan = plc.scans
-    session.back(200)
+    session.back(scan - 5)
+    assert plc["D0"] == 0
     session.seek(scan)
     assert plc["D0"] == 8
 
