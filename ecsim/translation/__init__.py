@@ -9,9 +9,11 @@ from pathlib import Path
 
 from ..assembler import Program, assemble
 from ..assembler.printer import print_globals, print_instructions
+from ..devices import Device
 from ..errors import EcsimError, Problem, ProgramError
 from ..models import Model, get_model
 from ..project import Project
+from ..system import SystemBlock
 from .places import Places
 from .text import Line, Refusal, Text
 from .to_ec import ToEC
@@ -66,6 +68,7 @@ def translate(program: str | Path | Project | Program, to: str | Model = "H2U", 
     units = work.units()
     if text.problems:
         raise ProgramError(text.problems)
+    _compare_retention(program.model, target, places, text)
     written = _written(program, places, units)
     try:
         assemble(written, target)
@@ -73,6 +76,20 @@ def translate(program: str | Path | Project | Program, to: str | Model = "H2U", 
         raise ProgramError([_blamed(problem, written, units) for problem in error.problems]) from None
     notes = sorted(text.notes.items(), key=lambda note: note[1])
     return Translation(target.name, written, tuple(Difference(line, what) for what, line in notes))
+
+
+def _compare_retention(source: Model, target: Model, places: Places, text: Text) -> None:
+    """Note the devices that keep their values without power for one of the models alone, as long as no system block says otherwise."""
+    here, there = (SystemBlock().retention(model) for model in (source, target))
+    kept: dict[bool, list[tuple[int, Device]]] = {True: [], False: []}
+    for (area, number), place in places.moved.items():
+        keeps = place.number in there.get(place.area, ())
+        if keeps != (number in here.get(area, ())) and places.used[area, number]:
+            kept[keeps].append((places.used[area, number], Device(area, number)))
+    for keeps, devices in kept.items():
+        if devices:
+            names = ", ".join(str(device) for _, device in sorted(devices, key=lambda each: (each[1].area, each[1].number)))
+            text.note(min(line for line, _ in devices), f"{'kept' if keeps else 'not kept'} there without power, unless told otherwise: {names}")
 
 
 def _written(program: Program, places: Places, units: list[tuple[str, list[Line], str]]) -> str:

@@ -174,6 +174,13 @@ def test_the_report_names_what_differs_with_its_first_line():
     assert translate("LD X0\nOUT Y0", "H2U").report() == "no differences"
 
 
+def test_the_report_names_what_one_of_the_models_alone_keeps_without_power():
+    there = translate("LD X0\nMOV 5 D199\nMOV 5 D600\nSET M500\nTONR T5 30", "H2U").report()
+    assert "line 3: kept there without power, unless told otherwise: D600, M500, T5" in there.splitlines()
+    back = translate("LD X0\nMOV K5 D200\nMOV K5 D199", "EC20", "H2U").report()
+    assert back == "line 2: not kept there without power, unless told otherwise: D200"
+
+
 # -- what is refused --------------------------------------------------------------------------------------------------------
 
 
