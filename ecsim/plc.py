@@ -5,6 +5,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from datetime import datetime
 from numbers import Integral
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -129,6 +130,10 @@ class Plc(Programming, States):
         self._special = self.memory.lists[self.model.special_bits], self.memory.lists[self.model.special_words]
         constant = self.model.relays.get("constant scan")
         self._governed = constant is not None and constant not in self.model.read_only_relays  # programs govern the machine
+        numbers = self.model.registers
+        by_ports = [number for port in self.ports for meaning, number in port.map.registers.items() if meaning in ("mode", "protocol")]
+        self._orders = itemgetter(numbers["constant scan"], numbers["watchdog"], *by_ports)  # the registers that they do it by
+        self._told: tuple | None = None  # what they held when they were looked at last
         self._services = {
             **functions(self.memory),
             "CLOCK": self.clock,
@@ -258,12 +263,16 @@ class Plc(Programming, States):
         return max(self._constant_us, 1000, -(-self._took_ns // 1000))
 
     def _set_constant_scan(self, ms: int) -> None:
-        self._constant_us = 1000 * ms
+        self._constant_us, self._told = 1000 * ms, None
         self._fixed_us = 0 if self.scan_ms is None else max(round(self.scan_ms * 1000), self._constant_us)
 
     def _obey(self) -> None:
         """Do what the program tells the machine by special relays and registers: the constant scan, the watchdog."""
         registers, numbers = self._special[1], self.model.registers
+        told = self._says("constant scan"), self._orders(registers)
+        if told == self._told:
+            return
+        self._told = told
         ms = max(registers[numbers["constant scan"]], 0) if self._says("constant scan") else 0
         if 1000 * ms != self._constant_us:
             self._set_constant_scan(ms)
