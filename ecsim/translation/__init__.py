@@ -89,7 +89,8 @@ def _compare_retention(source: Model, target: Model, places: Places, text: Text)
     for keeps, devices in kept.items():
         if devices:
             names = ", ".join(str(device) for _, device in sorted(devices, key=lambda each: (each[1].area, each[1].number)))
-            text.note(min(line for line, _ in devices), f"{'kept' if keeps else 'not kept'} there without power, unless told otherwise: {names}")
+            what = "kept" if keeps else "not kept"
+            text.note(min(line for line, _ in devices), f"{what} there without power, unless told otherwise: {names}")
 
 
 def _written(program: Program, places: Places, units: list[tuple[str, list[Line], str]]) -> str:
