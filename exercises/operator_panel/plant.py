@@ -7,7 +7,7 @@ Each part has its terminals; a panel has the parts that it is made with. Keys ar
     panel.turn(1234)  # the thumbwheels
 """
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import inf
 from operator import itemgetter
@@ -115,13 +115,15 @@ class OperatorPanel(Machine):
 
     # -- the operator -------------------------------------------------------------------------------------------
 
-    def press(self, keys: str | Iterable[str], seconds: float = PRESS_S) -> None:
+    def press(self, keys: str | Sequence[str], seconds: float = PRESS_S) -> None:
         """Press keys one after the other, each for so many seconds, behind those that are still to be pressed.
 
         "2057" and "1A" are keys of the keypad, or the single keys where there is no keypad; others are named: "up",
         "keys 7", ["left", "up"]. Raises EcsimError for a key that is not there.
         """
-        several = [keys] if (isinstance(keys, str) and " " in keys) or keys in ARROWS else keys
+        if not isinstance(keys, (str, list, tuple)):
+            raise EcsimError(f"{keys!r} is no text of keys; give '2057' or a list of names")
+        several = [keys] if isinstance(keys, str) and (" " in keys or keys in ARROWS) else keys
         names = [self._key(key) for key in several]
         if not seconds > 0:
             raise EcsimError(f"a key is pressed for {seconds!r} s; it takes more than 0")
@@ -135,7 +137,7 @@ class OperatorPanel(Machine):
 
         Raises EcsimError for a key that is not there.
         """
-        part, *places = key.split()
+        part, *places = key.split() or [""]
         try:
             if part == "switches":
                 return self.switch(*map(int, places))
@@ -150,7 +152,7 @@ class OperatorPanel(Machine):
 
     def release(self, key: str) -> None:
         """Take the finger off a key; nothing happens where there was none."""
-        if key.split()[0] not in ("switches", "wheels"):
+        if not key.startswith(("switches ", "wheels ")):
             self._held -= {self._key(key)}
             self._settle()
 
@@ -159,7 +161,7 @@ class OperatorPanel(Machine):
         self._need("switches")
         if row not in range(ROWS) or column not in range(COLUMNS):
             raise EcsimError(f"switch {row}, {column}; rows are 0 to {ROWS - 1}, columns 0 to {COLUMNS - 1}")
-        place = COLUMNS * row + column
+        place = COLUMNS * int(row) + int(column)
         level = not self.switches[place] if on is None else bool(on)
         self.switches = (*self.switches[:place], level, *self.switches[place + 1 :])
         self._settle()
@@ -167,9 +169,9 @@ class OperatorPanel(Machine):
     def turn(self, number: int, wheels: int = 0) -> None:
         """Turn the four thumbwheels of a set to a number, 0 to 9999."""
         self._need("wheels")
-        if wheels not in range(self.sets):
+        if wheels not in range(self.sets) or not isinstance(wheels, int):
             raise EcsimError(f"set {wheels!r} of thumbwheels; the panel has {self.sets}, counted from 0")
-        if number not in range(10**DIGITS):
+        if not isinstance(number, int) or number not in range(10**DIGITS):
             raise EcsimError(f"{number!r} on four thumbwheels; they show 0 to 9999")
         self.numbers = (*self.numbers[:wheels], number, *self.numbers[wheels + 1 :])
         self._settle()
@@ -180,7 +182,7 @@ class OperatorPanel(Machine):
 
     def _key(self, key: str) -> str:
         """The whole name of a key: its part and what stands on it."""
-        part, name = key.split() if " " in key else ("", key)
+        part, _, name = str(key).rpartition(" ")
         for each, caps in (("keypad", HEXADECIMAL), ("keys", HEXADECIMAL[:10]), ("arrows", ARROWS)):
             if each in self.parts and part in ("", each) and name in tuple(caps):
                 return f"{each} {name}"
