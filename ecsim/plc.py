@@ -16,7 +16,7 @@ from .devices import Bits, Device
 from .engines import CompiledEngine, SteppingEngine, Trace
 from .engines.access import functions
 from .errors import WATCHDOG, EcsimError
-from .hardware.analog import AnalogPoint, BaseAnalog, analog_point
+from .hardware.analog import AnalogPoint, BaseAnalog, Channel, analog_channels, analog_point
 from .hardware.clocks import Clocks
 from .hardware.counters import Counters
 from .hardware.eeprom import Eeprom
@@ -492,6 +492,11 @@ class Plc(Programming, States):
     def analog_point(self, name: str) -> AnalogPoint | None:
         """The analog terminal that a name like "AI0:V" or "AO1.3:mA" stands for, None for all other names."""
         return analog_point(name, self.analog, self.modules) if str(name)[:2] in ("AI", "AO") else None
+
+    @property
+    def analog_channels(self) -> list[Channel]:
+        """The analog channels of the base unit and the special modules, each with the mode that it is in."""
+        return analog_channels(self.analog, self.modules)
 
     def __setitem__(self, name: str, value: Any) -> None:
         device, kind, value = self._check_write(name, value)

@@ -10,7 +10,7 @@ from ecsim.errors import EcsimError
 
 from .plate import Plated
 from .rig import Rig
-from .table import menu_of, menus
+from .table import menus
 
 VIEWS = 4  # pages that may look at a time; one that went away leaves its window behind
 WINDOW = 200  # rows that a page may ask for
@@ -69,7 +69,7 @@ class Devices(Plated):
             row = table.rows[number]
             device = str(row.device)
             entries[f"row.{number}"] = [row.text(), row.bits(), row.forced(forces)]
-            entries[f"row.{number}.of"] = [device, *self.rig.point(device), row.look, menu_of(row.types), row.width, row.name]
+            entries[f"row.{number}.of"] = [device, *self.rig.point(device), row.look, row.menu, row.width, row.name]
         return entries
 
     def _view(self, key: str) -> Looker:

@@ -12,7 +12,7 @@ from ecsim.values import BOOL
 
 from .panel import Part
 from .rig import Rig
-from .table import Row
+from .table import Row, Signal, row_of
 
 MOST = 8  # plates that may be open at a time; a page that went away leaves its own behind
 EQUALS = ("decimal", "hex", "binary", "text")
@@ -21,7 +21,7 @@ EQUALS = ("decimal", "hex", "binary", "text")
 class Plate:
     """A plate that is open: of what, what has been typed into it, and what became of the last thing that was asked."""
 
-    def __init__(self, row: Row):
+    def __init__(self, row: Row | Signal):
         self.row = row
         self.typed: str | None = None
         self.done = 0  # the number of the last request that was answered
@@ -54,7 +54,7 @@ class Plated(Part):
 
     def on_look(self, plate, device, look=None):
         """Open a plate for a device, "D0" or "T0:BOOL"; `look` is how its value is written."""
-        row = Row(self.rig.plc, *self.rig.plc.memory.parse(device, self.rig.plc._names))
+        row = row_of(self.rig.plc, device)
         if look is not None:
             row.look_as(look)
         self._plates.pop(plate, None)
@@ -77,8 +77,10 @@ class Plated(Part):
         if shown := self._plates.get(plate):
             shown.attempt(n, lambda: self._write(shown.row, shown.row.read(text)))
 
-    def _write(self, row: Row, value: int | float) -> None:
-        if _is_input(row):
+    def _write(self, row: Row | Signal, value: int | float | None) -> None:
+        if isinstance(row, Signal):
+            self.rig.signal(row.name, value)
+        elif _is_input(row):
             self.rig.put(str(row.device), int(value))
         else:
             self.rig.session.set(row.name, value)
@@ -86,7 +88,12 @@ class Plated(Part):
     def on_force(self, plate, n, text):
         """Force what was typed, whatever program and terminal say."""
         if shown := self._plates.get(plate):
-            self._change(shown, n, lambda plc: plc.force(shown.row.name, shown.row.read(text)))
+            self._change(shown, n, lambda plc: self._force(plc, shown.row, text))
+
+    def _force(self, plc: Any, row: Row | Signal, text: str) -> None:
+        if isinstance(row, Signal):
+            raise EcsimError(f"{row.name} is a terminal and cannot be forced; write the signal, or force the register that has its number")
+        plc.force(row.name, row.read(text))
 
     def on_unforce(self, plate, n):
         """End forcing the device."""
@@ -118,17 +125,19 @@ class Plated(Part):
                 entry["refused"] = str(error)
         return entry
 
-    def _forced(self, row: Row) -> str | None:
+    def _forced(self, row: Row | Signal) -> str | None:
         """What the device itself is forced to, None when it is not."""
-        if not isinstance(row.device, Device):
+        if not isinstance(row, Row) or not isinstance(row.device, Device):
             return None
         name, numbers = self.rig.plc.memory.span(row.device, row.kind)
         forced = self.rig.plc.memory.forces().get(name, {})
         return row.text() if numbers[0] in forced and len(numbers) == 1 else None
 
-    def _lines(self, row: Row, forced: str | None) -> list[list[str]]:
+    def _lines(self, row: Row | Signal, forced: str | None) -> list[list[str]]:
         """What the device holds, and where on its way: words and value, "F" before what is forced."""
         plc, shown = self.rig.plc, row.text() if forced is None else f"F {forced}"
+        if isinstance(row, Signal):
+            return [["at the terminal", f"{shown} {row.look}" if shown != "none" else "no signal"]]
         if _is_input(row):
             number = row.device.number
             own = plc.memory.send("X", number, 1)[0]
@@ -145,12 +154,14 @@ class Plated(Part):
             lines.insert(0, ["the program says", row.text(int(own) if row.kind.signed or row.kind is BOOL else own & row.kind.high)])
         return lines
 
-    def _equals(self, row: Row, value: int | float) -> list[list[str]]:
-        """The same value in the other formats."""
+    def _equals(self, row: Row | Signal, value: int | float | None) -> list[list[str]]:
+        """The same value in the other formats; a signal has none."""
+        if isinstance(row, Signal):
+            return []
         shapes = EQUALS if FORMATS["decimal"].suits(row.kind) else ("hex",)
         bits = row.bits(value)
         return [[fmt, FORMATS[fmt].text(value if fmt == "decimal" else bits, row.kind.stored)] for fmt in shapes]
 
 
-def _is_input(row: Row) -> bool:
+def _is_input(row: Row | Signal) -> bool:
     return isinstance(row.device, Device) and row.device.area == "X"

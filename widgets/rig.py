@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 from ecsim.assembler.program import Instruction
 from ecsim.devices import Bits, Constant, number_text
 from ecsim.errors import EcsimError
+from ecsim.hardware.analog import Channel
 from ecsim.values import DINT
 
 from .history import StepTimes
@@ -66,6 +67,10 @@ class Rig:
         self.instructions = self.program.instructions
         self._names = {device: point.name for device, point in self.wiring.items()}
         self._comments = {device: point.what for device, point in self.wiring.items()}
+        for device, point in self.wiring.items():
+            if self.plc.analog_point(device) is not None:  # named with its kind of signal
+                terminal = device.partition(":")[0]
+                self._names[terminal], self._comments[terminal] = point.name, point.what
         for variable in self.program.variables.values():
             self._names[str(variable.device)] = variable.name
             self._comments.setdefault(str(variable.device), variable.comment)
@@ -76,6 +81,7 @@ class Rig:
             if index < len(unit.instructions)
         }
         self.inputs, self.outputs = self._points("X"), self._points("Y")
+        self.analog = [channel.terminal for channel in self._channels()]
         self._places: dict[str, tuple[str, int]] = {}
         self.charted: dict[str, Instruction] = {}  # step -> its first STL
         for instruction in self.instructions:
@@ -96,6 +102,20 @@ class Rig:
         used = max(last, default=0)
         count = LEAST_POINTS[area] if used <= LEAST_POINTS[area] else -(-used // 8) * 8
         return [f"{area}{number_text(area, number)}" for number in range(min(count, self.plc.model.areas[area].count))]
+
+    def _channels(self) -> list[Channel]:
+        """The analog channels; of a base unit that nobody has named only when program or machine use them."""
+        channels = self.plc.analog_channels
+        if self.plc.modules.base is None and not self._uses_analog():
+            return [channel for channel in channels if channel.place >= 0]
+        return channels
+
+    def _uses_analog(self) -> bool:
+        model = self.plc.model
+        ports = (*model.analog_inputs, *model.analog_outputs)
+        devices = {f"{model.special_bits}{port.enable}" for port in ports} | {f"{model.special_words}{port.register}" for port in ports}
+        used = {str(device) for device in self.plc.in_use((model.special_bits, model.special_words))} if ports else set()
+        return not devices.isdisjoint(used) or any(device[:2] in ("AI", "AO") and "." not in device for device in self.wiring)
 
     def name(self, device: str) -> str:
         """The variable's name, or what the machine calls the point."""
@@ -237,15 +257,22 @@ class Rig:
         if self.session.plant is not None:
             self.session.plant_on = on
 
-    def put(self, device: str, level: int) -> None:
+    def put(self, device: str, level: float | None) -> None:
         """Put a level on an input; one that the machine drives is taken over and held."""
         self.post(lambda plc: self._put(plc, device, level))
 
-    def _put(self, plc: Any, device: str, level: int) -> None:
+    def _put(self, plc: Any, device: str, level: float | None) -> None:
         if self.by(device) == "hand":
             plc[device] = level
         else:
             self.sensors.fail(f"{device} stuck {level}")
+
+    def signal(self, name: str, value: float | None) -> None:
+        """Put a signal on an analog input, "AI0:V", None for none; one that the machine drives is taken over. Raises EcsimError for what cannot be."""
+        self.plc.analog_point(name).check(value)
+        if value is None and self.by(name) != "hand":
+            raise EcsimError(f"{name} is driven by the machine; give a number, or disconnect the machine")
+        self.put(name, value)
 
     def free(self, device: str) -> None:
         """Give an input back to the machine."""

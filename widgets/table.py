@@ -6,11 +6,13 @@ import re
 from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 from itertools import count
-from typing import Any
+from math import isnan, nan
+from typing import Any, NamedTuple
 
 from ecsim.devices import Bits, Device, number_text
 from ecsim.errors import EcsimError
 from ecsim.formats import FORMATS, usual
+from ecsim.hardware.analog import Channel
 from ecsim.values import BOOL, INT, REAL, DataType, join, words_from_real
 
 MOST = 20_000  # rows of a table
@@ -51,6 +53,25 @@ def menus(plc: Any) -> dict[str, list[str]]:
     return {menu_of(types): list(looks(types)) for types in kinds}
 
 
+def row_of(plc: Any, name: str) -> Row | Signal:
+    """The row of a device, a name of the program or an analog terminal ("AI0:V"); raises EcsimError."""
+    signal = _signal(plc, name)
+    return Row(plc, *plc.memory.parse(name, plc._names)) if signal is None else signal
+
+
+def signals(plc: Any) -> list[tuple[str, Channel]]:
+    """The analog terminals by their names, one for each kind of signal: "AI1.0:V", "AI1.0:mA"."""
+    return [(f"{channel.terminal}:{unit}", channel) for channel in plc.analog_channels for unit in channel.units]
+
+
+def _signal(plc: Any, name: str) -> Signal | None:
+    """The row of an analog terminal, in whatever case its name is written; None for other names. Raises EcsimError for one that is not there."""
+    found = next((Signal(plc, known, channel) for known, channel in signals(plc) if known.casefold() == name.strip().casefold()), None)
+    if found is None and plc.analog_point(name.strip()) is not None:
+        raise EcsimError(f"{name} is no terminal of this PLC")
+    return found
+
+
 class Row:
     """One device, and as what it is looked at. The value is that of now."""
 
@@ -62,6 +83,11 @@ class Row:
         self._looks = looks(self.types)
         self.look = look or next(name for name, (its, fmt) in self._looks.items() if its is kind and fmt == usual(kind))
         self.kind, self.fmt = self._looks[self.look]
+
+    @property
+    def menu(self) -> str:
+        """The name of the ways in which it can be looked at."""
+        return menu_of(self.types)
 
     @property
     def name(self) -> str:
@@ -106,12 +132,67 @@ class Row:
         return not forces.get(name, {}).keys().isdisjoint(numbers)
 
 
+class Terminal(NamedTuple):
+    """An analog terminal as a device: "AI1.0"."""
+
+    area: str
+    number: tuple[int, int]  # the module's place, -1 for the base unit, and the channel
+    words: str
+
+    def __str__(self) -> str:
+        return self.words
+
+
+class Signal:
+    """An analog terminal and one kind of signal on it, in volts, milliamperes or degrees. It is a row like that of a device."""
+
+    kind, width = REAL, 0  # a number with a fraction, without bits
+
+    def __init__(self, plc: Any, name: str, channel: Channel):
+        self.plc, self.name = plc, name
+        self.look = self.menu = name.partition(":")[2]
+        self.device = Terminal(channel.terminal[:2], (channel.place, channel.number), channel.terminal)
+
+    def look_as(self, look: str) -> None:
+        """It has one look; raises EcsimError for another."""
+        if look != self.look:
+            raise EcsimError(f"{self.name} cannot be shown as {look!r}; add {self.device} in another unit as a row of its own")
+
+    @property
+    def value(self) -> float:
+        """The signal; not a number where there is none of this kind, or no module any more."""
+        try:
+            found = self.plc[self.name]
+        except EcsimError:
+            return nan
+        return nan if found is None else found
+
+    def text(self, value: float | None = None) -> str:
+        """The signal, or another one, as it is written."""
+        value = self.value if value is None else value
+        return "none" if isnan(value) else f"{value:.6g}"
+
+    def read(self, text: str) -> float | None:
+        """The signal that a text stands for, None for "none"; raises EcsimError in words."""
+        if text.strip().casefold() in ("", "none"):
+            return None
+        value = float(f"{FORMATS['float'].read(text, REAL):.7g}")  # the digits that were typed, not the nearest REAL
+        self.plc.analog_point(self.name).check(value)
+        return value
+
+    def bits(self, value: float | None = None) -> int:
+        return 0
+
+    def forced(self, forces: dict[str, dict[int, int]]) -> bool:
+        return False
+
+
 class Table:
     """The rows by their number, which a row keeps; found, sorted and filtered as asked."""
 
     def __init__(self, plc: Any, about: Callable[[str], tuple[str, str]]):
         self.plc, self.about = plc, about
-        self.rows: dict[int, Row] = {}
+        self.rows: dict[int, Row | Signal] = {}
         self._numbers = count(1)
         self._there: dict[str, int] = {}
         self.find, self.sort, self.down, self.only = "", "", False, ""
@@ -119,7 +200,7 @@ class Table:
         self._order: list[int] | None = None
         self._before: dict[int, int | float] = {}  # values since when changes are told
         self._changed: set[int] = set()
-        self._taken: dict[int, Row] = {}  # what was cleared away last
+        self._taken: dict[int, Row | Signal] = {}  # what was cleared away last
 
     # -- rows ---------------------------------------------------------------------------------------------------
 
@@ -147,14 +228,18 @@ class Table:
         self._take_up(found)
         return [self._there[row.name] for row in found]
 
-    def _take_up(self, rows: list[Row]) -> None:
+    def _take_up(self, rows: list[Row | Signal]) -> None:
         for row in rows:
             if row.name not in self._there:
                 number = self._there[row.name] = next(self._numbers)
                 self.rows[number] = row
         self._order = None
 
-    def _part(self, text: str) -> Iterator[Row]:
+    def _part(self, text: str) -> Iterator[Row | Signal]:
+        signal = _signal(self.plc, text)
+        if signal is not None:
+            yield signal
+            return
         spread = _RANGE.fullmatch(text)
         if spread is None:
             yield Row(self.plc, *self._parse(text))
@@ -229,7 +314,7 @@ class Table:
         """See what has changed or is forced by now, if only that is shown."""
         if self.only == "changed":
             values = self._before
-            changed = {number for number, row in self.rows.items() if values.setdefault(number, row.value) != row.value}
+            changed = {number for number, row in self.rows.items() if _differ(values.setdefault(number, row.value), row.value)}
             if not changed <= self._changed:
                 self._changed |= changed
                 self._order = None
@@ -237,7 +322,7 @@ class Table:
             self._order = None
 
     def _arranged(self) -> list[int]:
-        rows: list[tuple[int, Row]] = list(self.rows.items())
+        rows: list[tuple[int, Row | Signal]] = list(self.rows.items())
         if self.only == "changed":
             rows = [(number, row) for number, row in rows if number in self._changed]
         elif self.only == "forced":
@@ -250,11 +335,11 @@ class Table:
             rows.sort(key=lambda pair: self._rank(pair[1]), reverse=self.down)
         return [number for number, _ in rows]
 
-    def _rank(self, row: Row) -> tuple:
+    def _rank(self, row: Row | Signal) -> tuple:
         device = row.device
         place = device.area, isinstance(device, Bits), device.number
         if self.sort == "value":
-            return row.value, place
+            return (float("-inf") if row.value != row.value else row.value), place
         name = self.about(str(device))[0] if self.sort == "name" else ""
         return not name, name.casefold(), place
 
@@ -273,6 +358,11 @@ class Table:
         for device in map(str, self.plc.in_use(tuple(self.plc.model.areas))):
             if device.casefold().startswith(begins):
                 found.setdefault(device, (device, *self.about(device)))
+        for signal, channel in signals(self.plc):
+            if signal.casefold().startswith(begins):
+                found.setdefault(
+                    signal, (signal, "", self.about(channel.terminal)[0] or f"analog {'output' if channel.output else 'input'}")
+                )
         for offer in (self._itself(word), self._area(word)):
             if offer is not None:
                 found.setdefault(offer[0], offer)
@@ -292,3 +382,8 @@ class Table:
             return None
         count = area.end(0)  # of M those that come before a hole
         return f"{area.name}0-{area.name}{number_text(area.name, count - 1)}", "", f"all {count:,} of them"
+
+
+def _differ(one: float, other: float) -> bool:
+    """Whether two values differ; no signal is as good as no signal."""
+    return one != other and not (one != one and other != other)

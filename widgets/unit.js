@@ -1,4 +1,5 @@
-// The unit's face: a switch or button for each input, the window with its lamps, the mode switch, the potentiometers.
+// The unit's face: a switch or button for each input, the window with its lamps, the mode switch, the potentiometers, and the analog
+// terminals: a number and a slider for each input, what each output gives.
 
 const CAP = {
   switch: `<svg class="sw slide" width="26" height="46" viewBox="0 0 26 46" aria-hidden="true"><rect class="slot" x="1.5" y="1.5" width="23" height="43" rx="4"/><rect class="lit" x="3" y="22" width="20" height="21" rx="3"/><path class="mark i" d="M13 29v8"/><circle class="mark o" cx="13" cy="13" r="4"/><g class="move"><rect class="cap" x="3.5" y="3.5" width="19" height="20" rx="3"/><path class="grip" d="M8 10.5h10M8 13.5h10M8 16.5h10"/></g></svg>`,
@@ -27,8 +28,11 @@ const POT = (at) => {
   return `<svg class="knob pot" width="56" height="84" viewBox="10 0 56 92" aria-hidden="true">${ticks}<circle class="body" cx="38" cy="32" r="18"/><line class="hand" x1="38" y1="27" x2="38" y2="19"/><text class="value" x="38" y="73" text-anchor="middle">0</text><text x="38" y="87" text-anchor="middle">POT ${at}</text></svg>`;
 };
 
+const UNITS = { V: "V", mA: "mA", C: "°C" };
+const FINE = { V: 0.01, mA: 0.01, C: 0.1 }; // what a slider moves by
+
 panels.unit = (place, layout, page, view) => {
-  const { inputs = [], outputs = [], model = "", pots = 0 } = layout;
+  const { inputs = [], outputs = [], model = "", pots = 0, analog = [] } = layout;
   const points = new Map([...inputs, ...outputs].map((point) => [point.device, point]));
   let state = {};
   let wide = null;
@@ -87,10 +91,11 @@ panels.unit = (place, layout, page, view) => {
     }
     place.innerHTML = `
       <section class="unit" aria-label="${escaped(model)}, inputs and outputs" data-testid="unit" style="--ec-columns:${count}">
-        <div class="cols strip top">${screws(0)}</div>${ins}<div class="glass">${glass}</div>${outs}<div class="cols strip bottom">${screws(5)}</div>
+        <div class="cols strip top">${screws(0)}</div>${ins}<div class="glass">${glass}</div>${outs}${signals()}<div class="cols strip bottom">${screws(5)}</div>
       </section>`;
     roving(place.firstElementChild, () => [...place.querySelectorAll("[data-row]")]);
     for (const button of place.querySelectorAll(".control")) operate(button);
+    for (const cell of place.querySelectorAll(".signal.in")) wire(cell);
     for (const cell of place.querySelectorAll(".lampcell[data-lamp]")) cell.addEventListener("click", () => open(cell.dataset.lamp));
     for (const name of place.querySelectorAll(".point .name, .point .addr")) name.addEventListener("click", () => open(name.parentElement.dataset.point));
     for (const pot of place.querySelectorAll(".potcell")) turn(pot);
@@ -108,6 +113,7 @@ panels.unit = (place, layout, page, view) => {
   function rest(dead) {
     if (dead) plate.close();
     for (const button of place.querySelectorAll(".control, .knobkey, .potcell")) set(button, "aria-disabled", dead ? "true" : null);
+    if (wide !== null) for (const { device } of analog) signal(device);
   }
 
   // A control says what the hand did and waits for the unit to tell what came of it.
@@ -157,6 +163,107 @@ panels.unit = (place, layout, page, view) => {
     set(button, kind === "push" ? "aria-pressed" : "aria-checked", String(Boolean(state[device])));
   }
 
+  // -- analog terminals
+
+  function signals() {
+    const cells = analog.map(({ device, name, what, module }) => {
+      const into = device[1] === "I";
+      const label = escaped(`${device} ${name}`.trim());
+      const value = into
+        ? `<input class="mono" data-testid="signal-${device}" aria-label="${label}" spellcheck="false" autocomplete="off" inputmode="decimal">`
+        : `<output class="mono" data-testid="signal-${device}" aria-label="${label}"></output>`;
+      const ruler = into
+        ? `<input type="range" data-testid="slider-${device}" aria-label="${label}, slider">`
+        : '<span class="meter" aria-hidden="true"><i></i></span>';
+      return `
+        <div class="signal ${into ? "in" : "out"}" data-signal="${device}" title="${escaped([what, module].filter(Boolean).join(", "))}">
+          <p><span class="addr">${device}</span><span class="name">${escaped(name || module)}</span></p>
+          <p>${value}<span class="kind"></span><span class="by"></span><button class="give" data-testid="free-${device}" title="held by hand; press to give it back to the machine" hidden>held · free</button></p>
+          ${ruler}<p class="ends" aria-hidden="true"><span></span><span></span></p><p class="refused" role="alert" hidden></p>
+        </div>`;
+    });
+    return analog.length ? `<div class="analog" role="group" aria-label="Analog terminals">${cells.join("")}</div>` : "";
+  }
+
+  const written = (value) => (value === null ? "" : String(Number(value.toPrecision(6))));
+  function signal(device) {
+    const cell = place.querySelector(`[data-signal="${device}"]`);
+    const [value, unit, ends, by] = state[device] ?? [null, "", null, "hand"];
+    const away = !state[device];
+    const into = device[1] === "I";
+    set(cell, "data-none", value === null ? "" : null);
+    write(cell.querySelector(".kind"), UNITS[unit] ?? "");
+    write(cell.querySelector(".by"), away ? "no module" : by === "machine" ? "machine" : by === "stuck" || ends ? "" : "off");
+    cell.querySelector(".give").hidden = by !== "stuck" || page.dead;
+    const [low, high] = ends ?? [0, 0];
+    for (const [node, end] of [...cell.querySelectorAll(".ends span")].map((node, at) => [node, at ? high : low])) write(node, ends ? written(end).replace("-", "−") : "");
+    if (!into) {
+      write(cell.querySelector("output"), (away ? "" : value.toFixed(unit === "V" ? 3 : 2)).replace("-", "−"));
+      const [from, to] = ends ? [Math.min(Math.max(0, low), value), Math.max(Math.max(0, low), value)].map((each) => (each - low) / (high - low)) : [0, 0];
+      cell.querySelector(".meter i").style.cssText = `left:${100 * from}%;width:${100 * (to - from)}%`;
+      return;
+    }
+    const [field, slider] = cell.querySelectorAll("input");
+    field.disabled = page.dead || away;
+    slider.disabled = page.dead || !ends;
+    if (document.activeElement !== field || cell.dataset.typed === undefined) {
+      field.value = written(value);
+      field.placeholder = unit === "C" ? "broken" : "none";
+    }
+    if (!ends) return;
+    for (const [name, each] of Object.entries({ min: low, max: high, step: FINE[unit] })) set(slider, name, each);
+    if (cell.dataset.pulled === undefined) slider.value = value ?? Math.max(0, low);
+    set(slider, "aria-valuetext", value === null ? "no signal" : `${written(value)} ${UNITS[unit]}`);
+  }
+
+  // What was typed is put on the terminal by Enter or when the field is left; a slider's many moves in one frame are one message.
+  function wire(cell) {
+    const device = cell.dataset.signal;
+    const [field, slider] = cell.querySelectorAll("input");
+    const refused = cell.querySelector(".refused");
+    const name = () => `${device}:${state[device]?.[1]}`;
+    const tell = (words) => {
+      write(refused, words);
+      refused.hidden = !words;
+      set(field, "aria-invalid", words ? "true" : null);
+    };
+    const put = (text, heard = () => {}) =>
+      page.request("unit", "signal", { name: name(), text }, (words) => {
+        tell(words ?? "");
+        heard(words);
+      });
+    const take = () => {
+      if (cell.dataset.typed === undefined) return;
+      const text = field.value;
+      put(text, (words) => {
+        if (words || field.value !== text) return;
+        delete cell.dataset.typed;
+        signal(device);
+      });
+    };
+    field.addEventListener("input", () => (cell.dataset.typed = ""));
+    field.addEventListener("change", take);
+    field.addEventListener("keydown", (event) => {
+      event.stopPropagation();
+      if (event.key === "Enter") take();
+      if (event.key !== "Escape") return;
+      delete cell.dataset.typed;
+      tell("");
+      signal(device);
+    });
+    let sending;
+    slider.addEventListener("input", () => {
+      cell.dataset.pulled = "";
+      delete cell.dataset.typed;
+      sending ??= requestAnimationFrame(() => {
+        sending = undefined;
+        put(slider.value);
+      });
+    });
+    slider.addEventListener("change", () => delete cell.dataset.pulled);
+    cell.querySelector(".give").addEventListener("click", () => page.say("unit", "free_signal", { name: name() }));
+  }
+
   function lampOf(device) {
     const cell = place.querySelector(`.lampcell[data-lamp="${device}"]`);
     const on = state[device[0] === "X" ? `${device}.seen` : device];
@@ -180,6 +287,7 @@ panels.unit = (place, layout, page, view) => {
       if (device[0] === "X") control(device);
       lampOf(device);
     }
+    for (const { device } of analog) if (device in changes) signal(device);
     for (const cell of place.querySelectorAll(".lampcell.status")) {
       const word = cell.dataset.status;
       const lamp = state[word] ?? "off";

@@ -1,7 +1,10 @@
-"""The unit's face: inputs as switches and buttons, the window with its lamps, the mode switch, the potentiometers; a plate for each point."""
+"""The unit's face: inputs as switches and buttons, the window with its lamps, the mode switch, the potentiometers, analog signals; a plate for each point."""
+
+from ecsim.errors import EcsimError
 
 from .history import Pulses
 from .plate import Plated
+from .table import row_of
 
 PATIENCE_US = 100_000  # a press that no scan sees for so long (a filter, a force) is let go all the same
 
@@ -27,6 +30,7 @@ class Unit(Plated):
             "inputs": [rows[device] | {"control": self.rig.controls.get(device, "switch")} for device in self.rig.inputs],
             "outputs": [rows[device] for device in self.rig.outputs],
             "pots": len(self.rig.plc.pots),
+            "analog": [self._terminal(terminal) for terminal in self.rig.analog],
         }
 
     def frame(self):
@@ -40,8 +44,29 @@ class Unit(Plated):
             entries[f"{device}.by"] = rig.by(device)
         for device in rig.outputs:
             entries[device] = rig.terminal(device)
+        entries |= self._signals()
         entries.update((f"{device}.forced", int(forced[device])) for device in self.points if device in forced)
         return entries
+
+    def _terminal(self, terminal):
+        """An analog terminal; its module is like "4AD 1", "" for the base unit."""
+        name, what = self.rig.point(terminal)
+        place, dot, _ = terminal[2:].partition(".")
+        return {"device": terminal, "name": name, "what": what, "module": f"{self.rig.plc.modules[int(place)].kind} {place}" if dot else ""}
+
+    def _signals(self):
+        """The analog terminals: [signal or None, its unit, [lowest, highest], who drives it]; None where a module is away.
+
+        A channel that is off has no ends, and is shown in the first kind of signal that it can have.
+        """
+        channels = {channel.terminal: channel for channel in self.rig.plc.analog_channels}
+        return {terminal: self._signal(channels[terminal]) if terminal in channels else None for terminal in self.rig.analog}
+
+    def _signal(self, channel):
+        unit = channel.mode.unit if channel.mode else channel.units[0]
+        name = f"{channel.terminal}:{unit}"
+        ends = [channel.mode.low, channel.mode.high] if channel.mode else None
+        return [self.rig.plc[name], unit, ends, self.rig.by(name)]
 
     def pulsed(self):
         return self._pulses.take(self._on())
@@ -93,6 +118,19 @@ class Unit(Plated):
             self._releases.discard(device)
         else:
             self._releases.add(device)
+
+    def on_signal(self, name, text):
+        """Put a signal on an analog input, "AI0:V"; gives the reason in words where it is refused, else ""."""
+        try:
+            row = row_of(self.rig.plc, name)
+            self.rig.signal(row.name, row.read(str(text)))
+        except EcsimError as error:
+            return str(error)
+        return ""
+
+    def on_free_signal(self, name):
+        """Give an analog input back to the machine."""
+        self.rig.free(name)
 
     def on_free(self, device):
         """Give an input back to the machine."""

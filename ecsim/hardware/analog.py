@@ -164,6 +164,34 @@ def analog_point(name: str, base: Any, modules: Any) -> AnalogPoint | None:
     return point
 
 
+class Channel(NamedTuple):
+    """An analog channel as it is set up now: its terminal, "AI1.0" or "AO0" without the kind of signal, and the mode it works in.
+
+    `place` is that of its special module, -1 for the base unit; `units` are the kinds of signal that it can have. A channel that
+    is off has no `mode`.
+    """
+
+    terminal: str
+    place: int
+    number: int
+    units: tuple[str, ...]
+    mode: AnalogMode | None
+
+    @property
+    def output(self) -> bool:
+        return self.terminal.startswith("AO")
+
+
+def analog_channels(base: Any, modules: Any) -> list[Channel]:
+    """All analog channels that there are: those of the base unit, then those of the special modules by their places."""
+    found = []
+    for place, owner in ((-1, base), *sorted(modules.modules.items())):
+        for sense, number, modes, mode in owner.channels():
+            terminal = f"A{sense}{number}" if place < 0 else f"A{sense}{place}.{number}"
+            found.append(Channel(terminal, place, number, tuple(dict.fromkeys(each.unit for each in modes)), mode))
+    return found
+
+
 class BaseAnalog(Unit):
     """The analog channels of the base unit (appendix 1, section 11; appendix 2, section 13): `plc.analog.volts[0] = 2.5`.
 
@@ -208,6 +236,13 @@ class BaseAnalog(Unit):
             return 0.0
         return signal_of(mode, mode.zero, mode.full, self.memory.lists[model.special_words][port.register])[0]
 
+    def channels(self) -> list[tuple[str, int, tuple[AnalogMode, ...], AnalogMode | None]]:
+        """The channels that this base unit has: "I" or "O", number, the modes it can have, the mode it is in."""
+        relays = self.memory.lists[self.memory.model.special_bits]
+        sides = zip("IO", (self.inputs, self.outputs), self.points(), strict=True)
+        ports = [(sense, number, port) for sense, side, count in sides for number, port in enumerate(side[:count])]
+        return [(sense, number, port.modes, _mode(port, relays)) for sense, number, port in ports]
+
     def _must_be_there(self) -> None:
         if not any(self.points()):
             raise EcsimError("this base unit has no analog channels; the EC10 with 16 inputs and 14 outputs has them, or a special module")
@@ -225,7 +260,7 @@ class BaseAnalog(Unit):
         model = self.memory.model
         relays, registers = self.memory.lists[model.special_bits], self.memory.lists[model.special_words]
         for channel, port in enumerate(self.inputs):
-            mode = port.modes[relays[port.second]] if relays[port.enable] else None
+            mode = _mode(port, relays)
             mean = self.means[channel]
             if mode is not self.modes[channel]:
                 self.modes[channel] = mode
@@ -252,3 +287,8 @@ class BaseAnalog(Unit):
         self.modes = [None if place is None else port.modes[place] for place, port in zip(snapshot["modes"], self.inputs, strict=True)]
         self.time = snapshot["time"]
         self.wake(snapshot["awake"])
+
+
+def _mode(port: AnalogPort, relays: list) -> AnalogMode | None:
+    """How a channel of the base unit works, None while it is not enabled."""
+    return port.modes[port.second is not None and relays[port.second]] if relays[port.enable] else None

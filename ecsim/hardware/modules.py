@@ -104,6 +104,10 @@ class Module(Extension):
     def advance(self, since: int, now: int) -> None:
         """Time goes from `since` to `now`."""
 
+    def channels(self) -> list:
+        """Its analog channels: "I" or "O", number, the modes it can have, the mode it is in."""
+        return []
+
     def state(self) -> dict:
         return {"buffers": list(self.buffers)}
 
@@ -196,6 +200,10 @@ class AnalogModule(Module):
     def _mode(self, channel: int) -> AnalogMode | None:
         """How a channel works, None while it is off or set up wrongly."""
         return None if self._wrong(channel) else self.type.modes.get(self._get(MODE, channel))
+
+    def channels(self) -> list[tuple[str, int, tuple[AnalogMode, ...], AnalogMode | None]]:
+        sense, modes = "O" if self.type.output else "I", tuple(self.type.modes.values())
+        return [(sense, number, modes, self._mode(number)) for number in range(self.type.channels)] if self.present else []
 
     def _wrong(self, channel: int) -> bool:
         if self.signals and not 1 <= self._get(SAMPLES, channel) <= MOST_SAMPLES:

@@ -2,6 +2,10 @@
 
 import pytest
 from ecsim_widgets.plate import Plated
+from ecsim_widgets.rig import Rig
+
+from ecsim.plc import Plc
+from ecsim.session import Session
 
 
 @pytest.fixture
@@ -118,3 +122,36 @@ def test_plates_of_pages_that_went_away_are_given_up(part):
     part.receive("leave", {"plate": "19"})
     part.receive("write", {"plate": "19", "n": 1, "text": "5"})
     assert (len(part.plates()), part.rig.plc["D0"]) == (7, 0)
+
+
+# -- an analog terminal --------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def analog():
+    """Plates of an EC20 with a 4AD and a 4DA."""
+    plc = Plc("EC20", scan_ms=10, io=[(24, 16), "4AD", "4DA"])
+    plc.load("LD X0\nOUT Y0")
+    plc.run()
+    return Plated(Rig(plc, Session(plc, name="test")))
+
+
+def test_a_signal_is_written_on_the_plate_of_its_terminal(analog):
+    analog.receive("look", {"plate": "p", "device": "AI0.0:V"})
+    assert (plate(analog)["device"], plate(analog)["look"], lines(analog)) == ("AI0.0", "V", {"at the terminal": "no signal"})
+    analog.receive("write", {"plate": "p", "n": 1, "text": "-2.5"})
+    analog.rig.session.scan()
+    assert (analog.rig.plc["AI0.0:V"], lines(analog), plate(analog)["refused"]) == (-2.5, {"at the terminal": "-2.5 V"}, "")
+    analog.receive("write", {"plate": "p", "n": 2, "text": "none"})
+    analog.rig.session.scan()
+    assert analog.rig.plc["AI0.0:V"] is None
+
+
+def test_a_terminal_cannot_be_forced_and_an_output_not_written(analog):
+    analog.receive("look", {"plate": "p", "device": "AI0.0:V"})
+    analog.receive("force", {"plate": "p", "n": 1, "text": "1"})
+    analog.rig.session.scan()
+    assert "AI0.0:V is a terminal and cannot be forced" in plate(analog)["refused"]
+    analog.receive("look", {"plate": "q", "device": "AO1.0:V"})
+    analog.receive("write", {"plate": "q", "n": 1, "text": "1"})
+    assert "AO1.0:V is an output" in plate(analog, "q")["refused"]

@@ -3,7 +3,7 @@
 import pytest
 from ecsim_widgets.table import Row, Table, looks
 
-from ecsim import EcsimError
+from ecsim import EcsimError, Plc
 from ecsim.devices import Device
 from ecsim.values import BOOL, DINT, DWORD, INT, REAL, WORD
 
@@ -187,3 +187,64 @@ def test_a_table_that_nobody_has_touched_follows_the_program(make_rig):
 
 def test_a_table_may_be_given(make_rig):
     assert shown(make_rig(devices=["D0-D2", "Start"]).table) == ["D0", "D1", "D2", "X5"]
+
+
+# -- analog terminals ----------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def analog():
+    """The table of an EC20 with a 4AD and a 4DA."""
+    plc = Plc("EC20", io=[(24, 16), "4AD", "4DA"])
+    return Table(plc, lambda device: ("Level", "level of the tank") if device == "AI0.0" else ("", ""))
+
+
+def test_an_analog_terminal_is_a_row_with_its_signal(analog):
+    (number,) = analog.add("ai0.0:MA")
+    row = analog.rows[number]
+    assert (row.name, str(row.device), row.look, row.text()) == ("AI0.0:mA", "AI0.0", "mA", "none")
+    analog.plc["AI0.0:mA"] = 12.5
+    assert row.text() == "12.5"
+    analog.add("AI0.0:V D0 AO1.3:V")
+    assert shown(analog) == ["AI0.0:mA", "AI0.0:V", "D0", "AO1.3:V"]
+    assert [analog.rows[n].text() for n in analog.order()] == ["12.5", "none", "0", "0"]
+
+
+@pytest.mark.parametrize(("text", "words"), [("AI0.7:V", "channel 7"), ("AI3.0:V", "place 3"), ("AO1.0:C", "degrees"), ("AI0.0", "AI0.0")])
+def test_a_terminal_that_is_not_there_is_refused_in_words(analog, text, words):
+    with pytest.raises(EcsimError, match=words):
+        analog.add(text)
+    assert analog.rows == {}
+
+
+def test_terminals_are_offered_by_their_first_letters(analog):
+    assert analog.offers("ai0.0") == [("AI0.0:V", "", "Level"), ("AI0.0:mA", "", "Level")]
+    assert analog.offers("D0 ao1.3:v") == [("AO1.3:V", "", "analog output")]
+
+
+def test_terminals_are_sorted_and_found_as_devices_are(analog):
+    analog.add("D0 AO1.0:V AI0.2:V AI0.0:V")
+    analog.plc["D0"], analog.plc["AI0.2:V"] = 3, 2.5
+    analog.arrange(sort="device")
+    assert shown(analog) == ["AI0.0:V", "AI0.2:V", "AO1.0:V", "D0"]
+    analog.arrange(sort="value")
+    assert shown(analog) == ["AI0.0:V", "AO1.0:V", "AI0.2:V", "D0"]  # without a signal, 0 V, 2.5 V, 3
+    analog.arrange(find="level")
+    assert shown(analog) == ["AI0.0:V"]
+    analog.arrange(only="changed")
+    analog.plc["AI0.0:V"] = 1
+    analog.look_again()
+    assert shown(analog) == ["AI0.0:V"]  # those without a signal have not changed
+
+
+def test_a_terminal_whose_module_has_gone_has_no_signal(analog):
+    (number,) = analog.add("AI0.0:V")
+    analog.plc["AI0.0:V"] = 1
+    del analog.plc.modules[0]
+    assert analog.rows[number].text() == "none"
+
+
+def test_a_terminal_has_one_look(analog):
+    (number,) = analog.add("AI0.0:V")
+    with pytest.raises(EcsimError, match="row of its own"):
+        analog.look_as(number, "hex")

@@ -1,7 +1,13 @@
 """The unit's face: what the hand does reaches the terminal, what the program sees reaches the lamp."""
 
 import pytest
+from ecsim_widgets.rig import Rig
 from ecsim_widgets.unit import Unit
+
+from ecsim.plc import Plc
+from ecsim.session import Session
+
+from .conftest import Point
 
 
 def test_the_points_have_the_programs_names_and_the_controls_they_are_given(make_rig):
@@ -133,3 +139,122 @@ def test_what_the_plc_refuses_is_told_and_ends_nothing(rig):
     assert "D9999" in rig.run()["refused"]
     rig.post(lambda plc: plc.force("D0", 1))
     assert rig.run()["refused"] == ""
+
+
+# -- analog terminals ----------------------------------------------------------------------------------------------
+
+
+class Tank:
+    """A plant that tells a level in volts and is given a valve's voltage."""
+
+    def __init__(self):
+        self.wiring = {"AI0.2:V": Point("Level", "level of the tank"), "AO1.0:V": Point("Valve", "inlet valve")}
+
+    def step(self, seconds, outputs):
+        return {"AI0.2:V": 3.25 + outputs["AO1.0:V"]}
+
+
+@pytest.fixture
+def analog():
+    """The unit of an EC20 with a 4AD, a 4DA and a 4PT; the program gives 2500 to the first output."""
+
+    def make(plant=None, program="LD SM0\nMOV 2500 D0\nTO 1 0 D0 1"):
+        plc = Plc("EC20", scan_ms=10, io=[(24, 16), "4AD", "4DA", "4PT"])
+        plc.load(program)
+        session = Session(plc, plant=plant, name="test")
+        plc.run()
+        return Unit(Rig(plc, session))
+
+    return make
+
+
+def test_each_analog_channel_has_its_terminal_its_module_and_its_range(analog):
+    unit = analog(Tank())
+    rows = {row["device"]: row for row in unit.layout()["analog"]}
+    assert list(rows) == [f"A{sense}{place}.{number}" for sense, place in (("I", 0), ("O", 1), ("I", 2)) for number in range(4)]
+    assert rows["AI0.2"] == {"device": "AI0.2", "name": "Level", "what": "level of the tank", "module": "4AD 0"}
+    frame = unit.frame()
+    assert frame["AI0.0"] == [None, "V", [-10, 10], "hand"]  # docs/modules.md: mode 0 of a 4AD is -10 to 10 V
+    assert frame["AI2.3"] == [None, "C", [-150, 600], "hand"]  # and of a 4PT a Pt100
+
+
+def test_a_signal_reaches_the_terminal_and_none_takes_it_off(analog):
+    unit = analog()
+    assert unit.receive("signal", {"name": "AI0.1:V", "text": "-2.5"}) == ""
+    unit.rig.session.scan(2)
+    assert (unit.frame()["AI0.1"][0], unit.rig.plc["AI0.1:V"]) == (-2.5, -2.5)
+    assert unit.receive("signal", {"name": "AI0.1:V", "text": ""}) == ""
+    unit.rig.session.scan()
+    assert unit.frame()["AI0.1"][0] is None
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "words"),
+    [
+        ("AI0.1:V", "two", "'two' is no number"),
+        ("AO1.0:V", "1", "AO1.0:V is an output"),
+        ("AI0.9:V", "1", "no channel 9"),
+        ("AI2.0:V", "1", "a 4PT has no input for volts"),
+    ],
+)
+def test_a_signal_that_cannot_be_is_refused_in_words(analog, name, text, words):
+    unit = analog()
+    assert words in unit.receive("signal", {"name": name, "text": text})
+    unit.rig.session.scan()
+    assert unit.frame()["AI0.1"][0] is None
+
+
+def test_an_output_shows_what_it_gives(analog):
+    unit = analog()
+    unit.rig.session.scan(2)
+    assert unit.frame()["AO1.0"][:2] == [2.5, "V"]  # 2500 of 10000 is a quarter of 10 V
+
+
+def test_a_signal_of_the_machine_is_taken_over_and_given_back(analog):
+    unit = analog(Tank())
+    unit.rig.session.scan(3)
+    assert unit.frame()["AI0.2"] == [5.75, "V", [-10, 10], "machine"]
+    assert "driven by the machine" in unit.receive("signal", {"name": "AI0.2:V", "text": ""})
+    assert unit.receive("signal", {"name": "AI0.2:V", "text": "-1.5"}) == ""
+    unit.rig.session.scan(2)
+    assert unit.frame()["AI0.2"] == [-1.5, "V", [-10, 10], "stuck"]
+    unit.receive("free_signal", {"name": "AI0.2:V"})
+    unit.rig.session.scan()
+    assert unit.frame()["AI0.2"] == [5.75, "V", [-10, 10], "machine"]
+
+
+def test_the_unit_and_the_range_follow_the_mode_and_a_module_may_go(analog):
+    unit = analog(program="LD SM0\nMOV 2 D0\nMOV -1 D1\nTO 0 12 D0 2")  # buffers 12 to 15 are the modes: 2 is -20 to 20 mA, -1 off
+    unit.rig.session.scan(2)
+    assert unit.frame()["AI0.0"][1:3] == ["mA", [-20, 20]]
+    assert unit.frame()["AI0.1"][1:3] == ["V", None]
+    unit.rig.plc.modules[2].remove()
+    assert unit.frame()["AI2.0"] is None
+
+
+@pytest.mark.parametrize(
+    ("program", "io", "there"),
+    [
+        ("LD X0\nOUT Y0", None, []),
+        ("LD SM0\nOUT SM172", None, ["AI0", "AI1", "AO0"]),
+        ("LD SM0\nMOV D0 SD178", None, ["AI0", "AI1", "AO0"]),
+        ("LD X0\nOUT Y0", (16, 14), ["AI0", "AI1", "AO0"]),
+        ("LD X0\nOUT Y0", (24, 16), []),
+    ],
+)
+def test_an_ec10_shows_its_own_channels_where_they_are_used_or_the_base_unit_has_them(program, io, there):
+    plc = Plc("EC10", io=io)
+    plc.load(program)
+    assert [row["device"] for row in Unit(Rig(plc, Session(plc))).layout()["analog"]] == there
+
+
+def test_a_channel_of_the_ec10_measures_what_its_relays_choose():
+    plc = Plc("EC10", scan_ms=10)
+    plc.load("LD SM0\nOUT SM172\nLD SM0\nOUT SM174\nLD SM0\nOUT SM178")
+    unit = Unit(Rig(plc, Session(plc)))
+    assert unit.frame()["AI0"][2] is None  # not enabled yet
+    plc.run()
+    plc.scan(2)
+    assert unit.frame()["AI0"][1:3] == ["mA", [-20, 20]]
+    assert unit.frame()["AI1"][1:3] == ["V", None]
+    assert unit.frame()["AO0"] == [0.0, "V", [-10, 10], "hand"]

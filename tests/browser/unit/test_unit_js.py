@@ -1,6 +1,9 @@
 """The unit's face in a bare page, on a real PLC that stands still."""
 
 import pytest
+from ecsim_widgets import Lab
+
+from ecsim.plc import Plc
 
 pytestmark = pytest.mark.browser
 
@@ -204,3 +207,109 @@ def test_without_a_kernel_nothing_can_be_switched(unit):
     unit.frame()
     assert unit["plate"].count() == 0
     assert unit["X1"].get_attribute("aria-disabled") == "true"
+
+
+# -- analog terminals ----------------------------------------------------------------------------------------------
+
+
+class Tank:
+    """A plant that tells a level in volts."""
+
+    wiring = {"AI0.2:V": type("Point", (), {"name": "Level", "what": "level of the tank"})}
+
+    def step(self, seconds, outputs):
+        return {"AI0.2:V": 3.25}
+
+
+@pytest.fixture
+def analog(bench):
+    """The unit of an EC20 with a 4AD and a 4DA that gives 2.5 V on its first output."""
+    plc = Plc("EC20", scan_ms=10, io=[(24, 16), "4AD", "4DA"])
+    bench.lab = Lab(plc, "LD SM0\nMOV 2500 D0\nTO 1 0 D0 1", plant=Tank(), name="analog", autostart=False, devices=["AI0.0:V", "AI0.0:mA"])
+    plc.run()
+    bench.connect(bench.lab.panel("unit"))
+    yield bench
+    bench.lab.close()
+
+
+def test_a_typed_signal_is_put_on_the_terminal(analog):
+    field = analog["signal-AI0.0"]
+    field.fill("-4.5")
+    field.press("Enter")
+    scan(analog)
+    assert analog.lab.plc["AI0.0:V"] == -4.5
+    assert (field.input_value(), analog["slider-AI0.0"].input_value()) == ("-4.5", "-4.5")
+    field.fill("")
+    analog["signal-AI0.1"].focus()  # leaving the field is enough
+    scan(analog)
+    assert analog.lab.plc["AI0.0:V"] is None
+    assert field.get_attribute("placeholder") == "none"
+
+
+def test_what_is_no_signal_is_refused_in_words_and_stays_in_the_field(analog):
+    field = analog["signal-AI0.0"]
+    field.fill("much")
+    field.press("Enter")
+    scan(analog)
+    scan(analog)
+    assert (field.input_value(), field.get_attribute("aria-invalid")) == ("much", "true")
+    assert "'much' is no number" in analog["unit"].locator('[data-signal="AI0.0"] [role=alert]').inner_text()
+    field.press("Escape")
+    assert (field.input_value(), field.get_attribute("aria-invalid")) == ("", None)
+
+
+def test_a_slider_moves_by_keys_within_the_range_of_the_mode(analog):
+    slider = analog["slider-AI0.0"]
+    assert (slider.get_attribute("min"), slider.get_attribute("max")) == ("-10", "10")
+    slider.focus()
+    for key in ("Home", "ArrowRight", "ArrowRight"):
+        analog.page.keyboard.press(key)
+        scan(analog)
+    assert analog.lab.plc["AI0.0:V"] == -9.98  # a hundredth of a volt for each key
+    assert slider.get_attribute("aria-valuetext") == "-9.98 V"
+
+
+def test_an_output_shows_what_it_gives_with_its_unit(analog):
+    scan(analog, 2)
+    assert analog["signal-AO1.0"].inner_text() == "2.500"
+    assert analog["unit"].locator('[data-signal="AO1.0"] .kind').inner_text() == "V"
+
+
+def test_a_signal_of_the_machine_is_taken_over_and_freed(analog):
+    scan(analog, 2)
+    field = analog["signal-AI0.2"]
+    assert field.input_value() == "3.25"
+    field.fill("7.5")
+    field.press("Enter")
+    scan(analog, 2)
+    assert (field.input_value(), analog.lab.plc["AI0.2:V"]) == ("7.5", 7.5)
+    analog["free-AI0.2"].click()
+    scan(analog, 2)
+    assert field.input_value() == "3.25"
+    assert analog["free-AI0.2"].is_hidden()
+
+
+def test_without_a_kernel_the_signals_rest(analog):
+    analog.js("() => { model.gone = true; model.handlers['comm_live_update'](); }")
+    analog.frame()
+    assert analog["signal-AI0.0"].is_disabled()
+    assert analog["slider-AI0.0"].is_disabled()
+
+
+def test_the_device_table_takes_terminals_by_typing_and_writes_them(analog):
+    analog.connect(analog.lab.panel("devices"))
+    analog["add"].press_sequentially("ai0.3")
+    analog.settle()
+    assert analog["offers"].locator("li").all_inner_texts()[0].split("\n")[0] == "AI0.3:V"
+    analog.page.keyboard.press("ArrowDown")
+    analog.page.keyboard.press("Enter")
+    analog.settle()
+    row = analog["device-AI0.3:V"]
+    assert row.locator(".value").inner_text() == "none"
+    assert analog["device-AI0.0:mA"].locator("select").input_value() == "mA"
+    row.dblclick()
+    analog.settle()
+    analog["plate-value"].fill("1.25")
+    analog["plate-value"].press("Enter")
+    scan(analog)
+    assert (analog.lab.plc["AI0.3:V"], row.locator(".value").inner_text()) == (1.25, "1.25")
