@@ -154,14 +154,14 @@ class _Search:
 
     def _whole(self, stage: Stage, run: tuple[Scenario, dict[str, Any]]) -> Trace:
         trace, _ = stage.run(*run)
-        self.spent += trace.end
+        self.spent += trace.done
         return trace
 
     def _gets_past(self, stage: Stage) -> bool:
         """Whether the program behaves otherwise up to the first failure, and nothing is broken there any more."""
         run = stage.begin(*self.runs[0])
         trace = run.to(self.first.scan + 1)
-        self.spent += trace.end
+        self.spent += trace.done
         same = sum(scan <= self.first.scan for scan in self.before.scans)
         return trace.rows != self.before.rows[:same] and not self._breaks(self.runs[0], trace)[0]
 

@@ -85,6 +85,7 @@ class Trace:
     aliases: Mapping[str, str]  # name of the wiring -> lane
     steps: Sequence[str] = ()  # the devices of the lane `Step`
     cut: bool = False  # it was ended before its time
+    done: int = 0  # scans that were worked through, and not passed over
     _lanes: dict[str, Signal] = field(default_factory=dict, repr=False)
 
     def lane(self, name: str) -> Signal:
@@ -154,6 +155,7 @@ class Run:
         self._journal: list[tuple[int, tuple]] = []  # scan -> where the script was before it
         self._until: int | None = None
         self._rest = Rest(plc, plant)
+        self._passed = 0
         self._quiet, self._ask_at = 0, QUIET  # scans without a change, and from how many on it is asked whether scans may be passed over
         plc.run()
         self._plan()
@@ -191,7 +193,9 @@ class Run:
             step()
             if self._quiet >= self._ask_at:
                 self._pass_over()
-        return Trace(self.period_s, self._stop_at, self.scans, self.rows, self.places, self.names, self.steps, cut)
+        return Trace(
+            self.period_s, self._stop_at, self.scans, self.rows, self.places, self.names, self.steps, cut, self._stop_at - self._passed
+        )
 
     def sample(self) -> None:
         """After each scan: note what has changed, and let the operator act before the next one."""
@@ -218,6 +222,7 @@ class Run:
         count = self._rest.scans(min(ends) - done - 1)
         if count:
             self._rest.pass_over(count)
+            self._passed += count
             if self.plant is not None:
                 self.plant.step(count * self.period_s, self.session._outputs)
             self._quiet = 0
