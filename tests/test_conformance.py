@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from ecsim.instructions import TABLE
+from ecsim.models.fx_spelling import plain
 from ecsim.scenario import load_cases, run_case
 
 CONFORMANCE = Path(__file__).parent / "conformance"
@@ -95,6 +96,11 @@ def test_a_case_has_the_keys_of_the_form_and_expects_something(path):
 def test_every_instruction_of_the_table_has_five_cases():
     count = Counter(case["mnemonic"].partition(" ")[0] for path in FILES for case in cases(path) if case["models"][0][:2] == "EC")
     assert {mnemonic: count[mnemonic] for mnemonic, row in TABLE.items() if count[mnemonic] < 5 and "EC20" in row.models} == {}
+
+
+def test_every_instruction_of_h2u_has_three_cases():
+    count = Counter(plain(case["mnemonic"]) for path in FILES for case in cases(path) if case["models"][0][:2] != "EC")
+    assert {row["mnemonic"]: count[row["mnemonic"]] for row in FX_FACTS if count[row["mnemonic"]] < 3} == {}
 
 
 # -- the harness itself -------------------------------------------------------------------------------------------

@@ -280,9 +280,7 @@ class _Assembler:
         row = TABLE.get(written)
         if row is not None:
             here = self.model.spelled(written)
-            hint = self.model.foreign.get(written) or (
-                f"write {' or '.join(here)}" if here else f"{written} exists on {' and '.join(row.models)}"
-            )
+            hint = self.model.foreign.get(written) or (f"write {' or '.join(here)}" if here else elsewhere(written, self.model))
             self.source.report(statement.line, f"{self.model.name} has no {written}", hint, row.section)
             return
         close = get_close_matches(written[:12], self.definitions, 3, 0.6)

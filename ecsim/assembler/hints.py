@@ -29,8 +29,9 @@ def special_device(text: str, model: Model) -> str:
 
 
 def elsewhere(name: str, model: Model) -> str:
-    """On which models an instruction exists that this one has not; "" where on none."""
+    """On which models an instruction exists that this one has not, on those of its family if on one of them; "" where on none."""
     others = [
-        other.name for other in MODELS.values() if other is not model and (name in instructions_of(other) or name in pulse_forms_of(other))
+        other for other in MODELS.values() if other is not model and (name in instructions_of(other) or name in pulse_forms_of(other))
     ]
-    return f"{name} exists on {' and '.join(others)}" if others else ""
+    kin = [other for other in others if other.family == model.family]
+    return f"{name} exists on {' and '.join(other.name for other in kin or others)}" if others else ""

@@ -1,9 +1,20 @@
 """FNC 20 to 23, 29, 48 and 49: arithmetic of H1U and H2U where its results, flags or operands are not those of the other family."""
 
 from ..errors import DIVISION, Fault
-from .arithmetic import add, sqt, sub
+from .arithmetic import sqt
 from .conversion import real
 from .define import FX, H2U, RESULT, value
+
+
+def add(s1, s2):
+    """D = S1 + S2; a sum beyond the range goes on from 0 with the sign of the limit that was passed, so that 32767 + 2 gives 1."""
+    return s1 + s2
+
+
+def sub(s1, s2):
+    """D = S1 - S2; a difference beyond the range goes on from 0 with the sign of the limit that was passed, so that -32768 - 2 gives -1."""
+    return s1 - s2
+
 
 for _name, _number, _function in (("ADD", 20, add), ("SUB", 21, sub)):
     for _width, _type, _steps in (("", "INT", 7), ("D", "DINT", 13)):

@@ -22,22 +22,24 @@ def ist(s, d1, d2, machine, state):
     """Lead a chart by eight switches: by hand (S0), return to the origin (S1), automatic in steps, one cycle or many (S2).
 
     From S on stand: by hand, return, step, one cycle, continuous, start of the return, start, stop; the first mode that is ON
-    counts. M8040 holds the transitions, M8041 lets a cycle begin, M8042 is the start in one scan. A change between by hand,
+    counts. M8040 holds the transitions, M8041 lets a cycle begin, M8042 is the start in one scan, M8047 is ON. A change between by hand,
     return and automatic ends all steps and, unless M8045 is ON, turns all outputs OFF. D1 and D2 tell which steps are automatic.
     """
     mode = next((place for place in range(MANUAL, RETURN_START) if s[place]), None)
     lists, model = machine.memory.lists, machine.model
     relays = lists[model.special_bits]
-    inhibit, begin, pulse, keep = (
-        model.relays[meaning] for meaning in ("hold transitions", "transfer start", "start pulse", "outputs kept")
+    inhibit, begin, pulse, keep, monitor = (
+        model.relays[meaning] for meaning in ("hold transitions", "transfer start", "start pulse", "outputs kept", "monitor steps")
     )
+    relays[monitor] = True
     before, started = state or (None, True)
     rises = s[START] and not started
     if mode is None:
         return ((before, s[START]),)
     group = min(mode, STEP)
     if before is None or group != min(before, STEP):
-        lists["S"][:] = [False] * len(lists["S"])
+        steps = model.annunciators.start  # the states behind are no steps
+        lists["S"][:steps] = [False] * steps
         lists["S"][group] = True
         if not relays[keep] and before is not None:
             lists["Y"][:] = [False] * len(lists["Y"])

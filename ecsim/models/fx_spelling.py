@@ -309,7 +309,14 @@ FOREIGN = {
     "LBL": "write the label alone on its line: P1",
     **dict.fromkeys(("CSRET", "CIRET", "CFEND"), "write CJ to a label before SRET, IRET or FEND"),
     "RMOV": "write DMOV",
-}
+    **{
+        there: f"write {here}"
+        for there, here in (
+            ("SQT", "SQR"), ("DSQT", "DSQR"), ("SEG", "SEGD"), ("BITS", "SUM"), ("DBITS", "DSUM"), ("ITA", "ASCI"), ("ATI", "HEX"),
+            ("PUSH", "SFWR"), ("FIFO", "SFRD"), ("XMT", "RS"), ("RCV", "RS"), ("DHSCI", "DHSCS to I010"),
+        )
+    },
+}  # fmt: skip
 FOREIGN |= {
     f"R{name}": f"write DE{there}" for name, there in (("ADD", "ADD"), ("SUB", "SUB"), ("MUL", "MUL"), ("DIV", "DIV"), ("SQT", "SQR"))
 }
