@@ -132,7 +132,8 @@ class Plc(Programming, States):
         self._governed = constant is not None and constant not in self.model.read_only_relays  # programs govern the machine
         numbers = self.model.registers
         by_ports = [number for port in self.ports for meaning, number in port.map.registers.items() if meaning in ("mode", "protocol")]
-        self._orders = itemgetter(numbers["constant scan"], numbers["watchdog"], *by_ports)  # the registers that they do it by
+        if self._governed:
+            self._orders = itemgetter(numbers["constant scan"], numbers["watchdog"], *by_ports)  # the registers that they do it by
         self._told: tuple | None = None  # what they held when they were looked at last
         self._services = {
             **functions(self.memory),
