@@ -39,7 +39,10 @@ def test_a_wrong_model_fails_its_own_case_only(tmp_path, capsys):
     path = tmp_path / "cases.json"
     path.write_text(json.dumps([{**GOOD, "id": "odd", "models": ["EC30"]}, GOOD]), encoding="utf-8")
     assert main(["cases", str(path)]) == 1
-    assert capsys.readouterr().out.splitlines() == ["odd [EC30]: there is no model 'EC30'; ecsim knows EC10, EC20, H1U, H2U", "1 passed, 1 failed"]
+    assert capsys.readouterr().out.splitlines() == [
+        "odd [EC30]: there is no model 'EC30'; ecsim knows EC10, EC20, H1U, H2U",
+        "1 passed, 1 failed",
+    ]
 
 
 def test_the_command_tells_its_version(capsys):

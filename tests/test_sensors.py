@@ -90,7 +90,7 @@ def test_an_inverted_sensor_says_the_opposite(make):
     assert levels(session, 60) == [1] * 10 + [0] * 40 + [1] * 10
 
 
-@pytest.mark.parametrize("delay_s, scans", [(0.2, 20), (0.205, 21), (0.01, 1), (1.3, 130)])
+@pytest.mark.parametrize(("delay_s", "scans"), [(0.2, 20), (0.205, 21), (0.01, 1), (1.3, 130)])
 def test_a_delayed_sensor_says_it_later_and_loses_nothing(make, delay_s, scans):
     session = make()
     session.fail(f"X0 delayed {delay_s}")
@@ -210,7 +210,7 @@ def test_faults_wait_while_the_inputs_are_in_the_hand(make):
 
 
 @pytest.mark.parametrize(
-    "text, words",
+    ("text", "words"),
     [
         ("rusts", "there is no fault 'rusts'; the machine has sticks, a sensor is stuck 0 or 1, inverted, delayed or bounces"),
         ("", "there is no fault ''"),

@@ -45,7 +45,9 @@ class Interrupts(Unit):
     def allowed(self, event: int) -> bool:
         """Whether the event's own relay lets it ask."""
         relay = self.enables.get(event)
-        return relay is not None and self.memory.lists[self.memory.model.special_bits][relay] is not (event in self.memory.model.masked_events)
+        return relay is not None and self.memory.lists[self.memory.model.special_bits][relay] is not (
+            event in self.memory.model.masked_events
+        )
 
     def request(self, event: int) -> None:
         """Queue a request; one without a routine is no operation."""

@@ -37,8 +37,9 @@ def ist(s, d1, d2, machine, state):
     if mode is None:
         return ((before, s[START]),)
     group = min(mode, STEP)
-    if before is None or group != min(before, STEP):
-        steps = model.annunciators.start  # the states behind are no steps
+    steps = model.annunciators.start  # the states behind are no steps
+    resumes = before is None and any(lists["S"][:steps])  # steps that have kept their state without power go on
+    if not resumes and (before is None or group != min(before, STEP)):
         lists["S"][:steps] = [False] * steps
         lists["S"][group] = True
         if not relays[keep] and before is not None:

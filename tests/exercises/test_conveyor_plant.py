@@ -350,7 +350,7 @@ UP = {"Y1": 1, "Y2": 1, "Y4": 1}
 
 
 @pytest.mark.parametrize(
-    "fault, left, right, up",
+    ("fault", "left", "right", "up"),
     [
         ("left lift stops", 0.5, 1.0, 0),
         ("right lift stops", 1.0, 0.5, 0),
@@ -405,7 +405,8 @@ def test_without_pallets_the_line_runs_empty():
     plant.fail("no pallets")
     for _ in play(plant, 60):
         pass
-    assert plant.seconds == pytest.approx(60) and plant.fronts[0] - conveyor.PALLET > conveyor.DEPARTURE
+    assert plant.seconds == pytest.approx(60)
+    assert plant.fronts[0] - conveyor.PALLET > conveyor.DEPARTURE
     assert len(plant.fronts) == 1
 
 
@@ -424,5 +425,6 @@ def test_the_length_of_the_steps_changes_nothing_in_a_fault(fault):
             plant.step(step, outputs)
         stories.append((plant.fronts, plant.left, plant.gate, plant.delivered, plant.inputs, plant.incidents))
     assert stories[0][2:5] == stories[1][2:5]
-    assert stories[0][0] == pytest.approx(stories[1][0]) and stories[0][1] == pytest.approx(stories[1][1])
+    assert stories[0][0] == pytest.approx(stories[1][0])
+    assert stories[0][1] == pytest.approx(stories[1][1])
     assert [incident.what for incident in stories[0][5]] == [incident.what for incident in stories[1][5]]

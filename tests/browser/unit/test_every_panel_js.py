@@ -290,7 +290,16 @@ SHOWN = """() => {
 AWAKE = """() => [...document.querySelectorAll('.ec-root :is(button, input, select, textarea, [role=slider], [role=switch])')]
   .filter((node) => node.getBoundingClientRect().width && !node.disabled && node.getAttribute('aria-disabled') !== 'true' && !node.readOnly)
   .map((node) => node.dataset.testid ?? node.className)"""
-LOOKING = {"chart-follow", "zoom-out", "zoom-in", "seconds", "follow", "network", "breaks", "text"}  # what only looks still works, and a text can be copied
+LOOKING = {
+    "chart-follow",
+    "zoom-out",
+    "zoom-in",
+    "seconds",
+    "follow",
+    "network",
+    "breaks",
+    "text",
+}  # what only looks still works, and a text can be copied
 
 
 def test_opened_again_without_a_kernel_it_shows_the_last_state_and_says_so(shown):
