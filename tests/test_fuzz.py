@@ -264,7 +264,7 @@ def test_the_check_sees_a_foreign_name():
         "# line x",
         "M[0] = 'text'",
         "lambda: 1",
-        "def other(): pass",
+        "def stranger(): pass",
     ):
         assert foreign(text) != [], text
 

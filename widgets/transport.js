@@ -263,7 +263,7 @@ panels.transport = (place, layout, page) => {
       set(find(".thumb"), "x", DETENT(at) - 4.5);
       [...place.querySelectorAll(".speed text")].forEach((text, index) => text.classList.toggle("here", index === at));
       set(slider, "aria-valuenow", at);
-      set(slider, "aria-valuetext", run.speed === null ? "as fast as possible" : `${run.speed} times real time`);
+      set(slider, "aria-valuetext", run.speed == null ? "as fast as possible" : `${run.speed} times real time`);
       set(plant, "aria-checked", String(Boolean(run.plant)));
       past();
       say();

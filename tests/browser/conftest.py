@@ -152,16 +152,17 @@ class Notebook:
         return self.page.evaluate(cells)
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def open_notebook(root, server, browser):
     """Open a copy of a notebook (of notebooks/, or any by its whole path), each with a kernel of its own, ready and connected.
 
+    Behind the module's tests pages are closed and kernels ended: a lab that runs on would slow down all that follows.
     `app` is "lab/tree" for JupyterLab, "notebooks" for Notebook 7.
     """
     pages = []
 
     def open_it(name, width=1280, height=900, app="lab/tree"):
-        copy = f"{len(pages)}-{Path(name).name}"
+        copy = f"{len(list(server.folder.glob('*.ipynb')))}-{Path(name).name}"
         shutil.copy(root / "notebooks" / name, server.folder / copy)
         page = browser.new_page(viewport={"width": width, "height": height})
         page.set_default_timeout(60_000)
@@ -172,4 +173,5 @@ def open_notebook(root, server, browser):
 
     yield open_it
     for page in pages:
+        page.evaluate("() => window.jupyterapp.shell.currentWidget?.sessionContext?.shutdown()")
         page.close()

@@ -24,7 +24,7 @@ MESSAGES = st.binary(max_size=253) | st.builds(
 )
 
 
-@pytest.mark.parametrize("model", list(MODELS))
+@pytest.mark.parametrize("model", [name for name, model in MODELS.items() if model.family == "EC"])  # whose map the oracle has
 def test_mutated_frames_are_answered_as_the_manual_says(model):
     outcomes, faults = fuzz.attack(2500, seed=7, model=model)
     assert faults == []
