@@ -160,6 +160,7 @@ def test_the_keyboard_goes_over_the_keys_and_presses_them(panel):
     panel.settle()
     assert plant.pressed == {"keys 7"}
     keyboard.press("Tab")  # the focus leaves while it is down
+    keyboard.up("Space")
     panel.settle()
     assert plant.pressed == set()
 
