@@ -1,15 +1,16 @@
 """H1U and H2U -> EC10 and EC20."""
 
 from collections.abc import Callable
+from typing import ClassVar
 
 from ..assembler import Instruction, Program, Unit
 from ..devices import Device
 from ..instructions import TABLE
 from ..models import Model
-from ..values import REAL
 from .places import Places
 from .text import Line, Refusal, Text
-from .to_fx import IN_PLACE, INPUTS, NAMES, SWAPPED
+from .to_fx import IN_PLACE, NAMES
+from .way import INPUTS, MASKS, Way
 
 _BACK = {f"FX:{name}": key for key, name in NAMES.items() if name != "OUT"}
 KEYS = {
@@ -31,12 +32,14 @@ CONTACTS = {f"FX:{join}{edge}": (join, "EU" if edge == "P" else "ED") for join i
 ENDS = frozenset({"FX:SRET", "FX:IRET", "FX:FEND", "FX:END", "FX:I"})
 
 
-class ToEC:
-    """A program of FX in the words of EC, instruction by instruction."""
+class ToEC(Way):
+    """A program of FX in the words of EC."""
+
+    masks: ClassVar[dict[int, int]] = {there: here for here, there in MASKS.items()}
+    says = "forbids an event"
 
     def __init__(self, program: Program, target: Model, places: Places, text: Text):
-        self.program, self.target, self.places, self.text = program, target, places, text
-        self.masks = {8050 + number: 40 + number for number in range(INPUTS)} | {8056 + place: 66 + place for place in range(3)}
+        super().__init__(program, target, places, text)
         self.rules: dict[str, Callable[[Instruction], list[Line]]] = {
             **dict.fromkeys(CONTACTS, self._contact), "FX:PLS": self._pulse, "FX:PLF": self._pulse, "FX:MC": self._mc, "FX:MCR": self._mcr,
             "FX:RST D": self._clear, "FX:ZRST": self._zrst, "FX:ZRST D": self._zrst_words, "FX:CJ END": self._end, "FX:FOR": self._for,
@@ -82,7 +85,7 @@ class ToEC:
             except Refusal as refusal:
                 self.text.refuse_at(instruction, refusal)
                 new = []
-            if new and place in starts and instruction.mnemonic in self.places.source.unconditional:
+            if new and place in starts and instruction.mnemonic in self.source.unconditional:
                 new.insert(0, Line("LD", ("SM0",), instruction.line))
             if new and unit.titles.get(place):
                 new[0].title = unit.titles[place]
@@ -93,16 +96,6 @@ class ToEC:
     def _is_head(unit: Unit, place: int) -> bool:
         """The label that a subroutine begins with."""
         return unit.kind == "SUBROUTINE" and place == 0 and unit.instructions[0].mnemonic == "LBL"
-
-    def _line(self, instruction: Instruction, name: str, written: tuple[str, ...]) -> Line:
-        return Line(name, written, instruction.line, instruction.comment)
-
-    def _operands(self, instruction: Instruction) -> tuple[str, ...]:
-        specs = instruction.definition.operands
-        return tuple(
-            self.places.operand(operand, written, real=spec.type is REAL)
-            for spec, operand, written in zip(specs, instruction.operands, instruction.written, strict=True)
-        )
 
     def _translated(self, instruction: Instruction) -> list[Line]:
         mask = self._mask(instruction)
@@ -115,16 +108,9 @@ class ToEC:
         if name.startswith("FX:"):
             raise Refusal(f"{self.target.name} has nothing that does the same")
         if instruction.mnemonic == "FX:OUT C":
-            self._contact_alone(instruction)
+            self._contact_alone(instruction, "stops at its preset here and counts on there")
         self.places.same_widths(instruction, TABLE[name])
         return [self._line(instruction, name, self._operands(instruction))]
-
-    def _contact_alone(self, coil: Instruction) -> None:
-        device = coil.operands[0]
-        for other in self.program.instructions:
-            for spec, operand in zip(other.definition.operands, other.operands, strict=False):
-                if operand == device and spec.type.words and other.definition.form != "always":
-                    raise Refusal(f"{device} stops at its preset here and counts on there, and line {other.line} looks at its value")
 
     def _at_rise(self, instruction: Instruction, lines: list[Line]) -> list[Line]:
         """Executed at a rise: an edge before it, the flow kept for what follows."""
@@ -185,7 +171,7 @@ class ToEC:
         return [self._line(instruction, "CFEND", ())]
 
     def _for(self, instruction: Instruction) -> list[Line]:
-        return [Line("LD", ("SM0",), instruction.line), self._line(instruction, "FOR", self._operands(instruction))]
+        return [Line("LD", ("SM0",), instruction.line), self._loop(instruction, "once here and never there")]
 
     def _label(self, instruction: Instruction) -> list[Line]:
         number = instruction.operands[0].value
@@ -195,16 +181,6 @@ class ToEC:
         return [self._line(instruction, "CALL", (self._routine(str(instruction.operands[0])),))]
 
     # -- interrupts -------------------------------------------------------------------------------------------------
-
-    def _mask(self, instruction: Instruction) -> Line | None:
-        operand = instruction.operands[0] if instruction.operands else None
-        if not isinstance(operand, Device) or operand.area != "M" or operand.number not in self.masks:
-            return None
-        name = SWAPPED.get(instruction.mnemonic)
-        if name is None:
-            raise Refusal(f"{operand} has no counterpart that {instruction.mnemonic} can drive", "use SET and RST")
-        self.text.note(instruction.line, f"{operand} forbids an event while it is ON, SM{self.masks[operand.number]} while it is OFF")
-        return self._line(instruction, name, (f"SM{self.masks[operand.number]}",))
 
     def _enables(self) -> list[Line]:
         """Events are let in there by a relay each, here they are unless they are forbidden."""

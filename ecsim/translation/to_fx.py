@@ -7,9 +7,9 @@ from ..devices import Bits, Constant, Device, number_text
 from ..instructions.spelling import instructions_of
 from ..models import Model
 from ..models.model import By
-from ..values import REAL
 from .places import Places
 from .text import Line, Refusal, Text
+from .way import INPUTS, MASKS, Way
 
 # The same under another name, where the row of TABLE is not the same: wider, other limits, other flags.
 NAMES = {
@@ -36,16 +36,17 @@ HINTS = {
 }  # fmt: skip
 IN_PLACE = frozenset("ROR DROR ROL DROL RCR DRCR RCL DRCL NEG DNEG".split())
 EDGES = {("LD", "EU"): "P", ("LD", "ED"): "F"}  # those of LDI differ in the first scan
-SWAPPED = {"SET": "RST", "RST": "SET", "LD": "LDI", "LDI": "LD", "AND": "ANI", "ANI": "AND", "OR": "ORI", "ORI": "OR"}
-INPUTS = 6  # X0 to X5 ask for interrupts there
 FIRST_HELPER = 499  # auxiliary relays are taken from here downward: they are not retained
 
 
-class ToFX:
-    """A program of EC in the words of FX, instruction by instruction."""
+class ToFX(Way):
+    """A program of EC in the words of FX."""
+
+    masks = MASKS
+    says = "lets an event ask"
 
     def __init__(self, program: Program, target: Model, places: Places, text: Text):
-        self.program, self.target, self.places, self.text = program, target, places, text
+        super().__init__(program, target, places, text)
         self.names: dict[str, str] = {}
         for spelled, meant in target.spelling.items():
             for key in meant.keys if isinstance(meant, By) else (meant,):
@@ -55,12 +56,6 @@ class ToFX:
         self.labels = {i.operands[0].value for i in program.instructions if i.mnemonic == "LBL" and isinstance(i.operands[0], Constant)}
         self.routines = {unit.name.upper(): self._label() for unit in program.units if unit.kind == "SUBROUTINE"}
         self.periods = self._periods()
-        # relays that let events ask: there they forbid it
-        self.masks = (
-            {40 + number: 8050 + number for number in range(INPUTS)} | {66 + place: 8056 + place for place in range(3)}
-            if program.model.family == "EC"
-            else {}
-        )
         self.rules: dict[str, Callable[[Instruction], list[Line]]] = {
             "MC": self._mc, "MCR": self._mcr, "ZRST": self._zrst, "DECO": self._deco, "CALL": self._call, "LBL": self._lbl, "CJ": self._cj,
             "CFEND": self._cfend, "CSRET": self._leave, "CIRET": self._leave, **dict.fromkeys(IN_PLACE, self._in_place),
@@ -72,7 +67,6 @@ class ToFX:
         others = len(self.program.units) > 1
         for unit in self.program.units:
             self.exit: int | None = None  # the label behind the last instruction, where one leads there
-            self.levels: list[str] = []
             lines = self._unit(unit)
             if self.exit is not None:
                 lines.append(Line("P", (f"P{self.exit}",)))
@@ -121,7 +115,7 @@ class ToFX:
                 elif instruction.mnemonic in ("EU", "ED"):
                     new = self._edge(instruction, open_blocks, branches)
                 elif following == "FOR" and str(self.places.operand(instruction.operands[0], instruction.written[0])) == "M8000":
-                    new = [self._line(instructions[place + 1], "FOR", self._operands(instructions[place + 1]))]
+                    new = [self._loop(instructions[place + 1], "once there and never here")]
                     place += 1
                 elif self._drops(instruction):
                     new = []
@@ -139,16 +133,6 @@ class ToFX:
             place += 1
         return lines
 
-    def _line(self, instruction: Instruction, name: str, written: tuple[str, ...]) -> Line:
-        return Line(name, written, instruction.line, instruction.comment)
-
-    def _operands(self, instruction: Instruction) -> tuple[str, ...]:
-        specs = instruction.definition.operands
-        return tuple(
-            self.places.operand(operand, written, real=spec.type is REAL)
-            for spec, operand, written in zip(specs, instruction.operands, instruction.written, strict=True)
-        )
-
     def _translated(self, instruction: Instruction) -> list[Line]:
         mnemonic = instruction.mnemonic
         mask = self._mask(instruction)
@@ -160,21 +144,11 @@ class ToFX:
         name = self.names.get(mnemonic)
         if name is None:
             raise Refusal(f"{self.target.name} has nothing that does the same", HINTS.get(mnemonic, ""))
-        if mnemonic == "CTU" or mnemonic in ("TON", "TONR"):
-            self._contact_alone(instruction)
+        if mnemonic == "CTU":
+            self._contact_alone(instruction, "counts on beyond its preset", "count with INC instead")
         if name != "OUT":
             self.places.same_widths(instruction, self.rows[name])
         return [self._line(instruction, name, self._operands(instruction))]
-
-    def _contact_alone(self, coil: Instruction) -> None:
-        """A counter goes on beyond its preset here and stops there: its value may not be looked at."""
-        device = coil.operands[0]
-        for other in self.program.instructions:
-            for spec, operand in zip(other.definition.operands, other.operands, strict=False):
-                if operand == device and spec.type.words and other.definition.form != "always" and coil.mnemonic == "CTU":
-                    raise Refusal(
-                        f"{device} counts on beyond its preset, and line {other.line} looks at its value", "count with INC instead"
-                    )
 
     # -- what has a form of its own ---------------------------------------------------------------------------------
 
@@ -257,23 +231,12 @@ class ToFX:
 
     # -- interrupts -------------------------------------------------------------------------------------------------
 
-    def _mask(self, instruction: Instruction) -> Line | None:
-        """A relay that lets an event ask is ON for yes here, for no there."""
-        operand = instruction.operands[0] if instruction.operands else None
-        if not isinstance(operand, Device) or operand.area != self.program.model.special_bits or operand.number not in self.masks:
-            return None
-        name = SWAPPED.get(instruction.mnemonic)
-        if name is None:
-            raise Refusal(f"{operand} has no counterpart that {instruction.mnemonic} can drive", "use SET and RST")
-        self.text.note(instruction.line, f"{operand} lets an event ask while it is ON, M{self.masks[operand.number]} while it is OFF")
-        return self._line(instruction, name, (f"M{self.masks[operand.number]}",))
-
     def _periods(self) -> dict[int, int]:
         """The periods of timed interrupts that the program sets, by register."""
         found: dict[int, set[int]] = {}
         for instruction in self.program.instructions:
             target = instruction.operands[-1] if instruction.operands else None
-            if isinstance(target, Device) and target.area == self.program.model.special_words and target.number in (66, 67, 68):
+            if isinstance(target, Device) and target.area == self.source.special_words and target.number in (66, 67, 68):
                 value = instruction.operands[0]
                 found.setdefault(target.number, set()).add(
                     value.value if instruction.mnemonic == "MOV" and isinstance(value, Constant) else -1
@@ -282,7 +245,7 @@ class ToFX:
 
     def _drops(self, instruction: Instruction) -> bool:
         target = instruction.operands[-1] if instruction.operands else None
-        return isinstance(target, Device) and target.area == self.program.model.special_words and target.number in self.periods
+        return isinstance(target, Device) and target.area == self.source.special_words and target.number in self.periods
 
     def _event(self, unit: Unit) -> str:
         event = unit.event

@@ -205,6 +205,24 @@ def test_what_cannot_be_kept_is_refused(text, line, words):
     assert [(place, message) for place, message, _ in found if words in message and place == line], found
 
 
+def test_a_loop_that_might_never_be_entered():
+    """A count below 1 means once in FX and never in EC."""
+    ec, fx = "LD SM0\nFOR {}\nLD SM0\nINC D0\nNEXT", "FOR {}\nLD M8000\nINC D0\nNEXT"
+    for text, constant, count, to, model, words in (
+        (ec, "0", "D5", "H2U", "EC20", "once there and never here"),
+        (fx, "K0", "D5", "EC20", "H2U", "once here and never there"),
+    ):
+        (found,) = refusals(text.format(constant), to, model)
+        assert words in found[1]
+        assert words in translate(text.format(count), to, model).report()
+    for count in (-1, 0, 1, 3):
+        machines, _ = twins(ec.format("D5"), "H2U", "EC20")
+        for plc in machines:
+            plc["D5"] = count
+            plc.scan()
+        assert [plc["D0"] for plc in machines] == [max(count, 0), max(count, 1)]
+
+
 def test_all_refusals_are_told_at_once():
     assert [line for line, _, _ in refusals("LD X0\nTOF T0 5\nLD X1\nTMON T1 5\nLD X2\nCTR C0 5")] == [2, 4, 6]
 

@@ -1,0 +1,64 @@
+"""What both ways of a translation share: lines, operands, masks of interrupts, and whether something looks at a value."""
+
+from typing import ClassVar
+
+from ..assembler import Instruction, Program
+from ..devices import Constant, Device
+from ..models import Model
+from ..values import REAL
+from .places import Places
+from .text import Line, Refusal, Text
+
+INPUTS = 6  # X0 to X5 ask for interrupts in both families
+# EC's relay that lets an event ask while it is ON -> FX's that forbids it while it is ON.
+MASKS = {40 + number: 8050 + number for number in range(INPUTS)} | {66 + place: 8056 + place for place in range(3)}
+SWAPPED = {"SET": "RST", "RST": "SET", "LD": "LDI", "LDI": "LD", "AND": "ANI", "ANI": "AND", "OR": "ORI", "ORI": "OR"}
+
+
+class Way:
+    """A program of one family in the words of the other, instruction by instruction."""
+
+    masks: ClassVar[dict[int, int]]  # number of a relay here -> there
+    says: ClassVar[str]  # what such a relay does here while it is ON
+
+    def __init__(self, program: Program, target: Model, places: Places, text: Text):
+        self.program, self.source, self.target, self.places, self.text = program, program.model, target, places, text
+
+    def _line(self, instruction: Instruction, name: str, written: tuple[str, ...]) -> Line:
+        return Line(name, written, instruction.line, instruction.comment)
+
+    def _operands(self, instruction: Instruction) -> tuple[str, ...]:
+        specs = instruction.definition.operands
+        return tuple(
+            self.places.operand(operand, written, real=spec.type is REAL)
+            for spec, operand, written in zip(specs, instruction.operands, instruction.written, strict=True)
+        )
+
+    def _contact_alone(self, coil: Instruction, words: str, hint: str = "") -> None:
+        """A counter goes on beyond its preset in one family and stops there in the other: refuse it where something looks at its value."""
+        device = coil.operands[0]
+        for other in self.program.instructions:
+            for spec, operand in zip(other.definition.operands, other.operands, strict=False):
+                if operand == device and spec.type.words and other.definition.form != "always":
+                    raise Refusal(f"{device} {words}, and line {other.line} looks at its value", hint)
+
+    def _loop(self, instruction: Instruction, words: str) -> Line:
+        """FOR: a count below 1 means once in one family and never in the other."""
+        (count,) = instruction.operands
+        if isinstance(count, Constant) and count.value < 1:
+            raise Refusal(f"a loop with a count below 1 is executed {words}", "give a count from 1 on")
+        if not isinstance(count, Constant):
+            self.text.note(instruction.line, f"a loop with a count below 1 is executed {words}")
+        return self._line(instruction, "FOR", self._operands(instruction))
+
+    def _mask(self, instruction: Instruction) -> Line | None:
+        """An instruction on a relay that lets an event ask, or forbids it, with the sense turned round; None for all others."""
+        operand = instruction.operands[0] if instruction.operands else None
+        if not isinstance(operand, Device) or operand.area != self.source.special_bits or operand.number not in self.masks:
+            return None
+        name = SWAPPED.get(instruction.mnemonic)
+        if name is None:
+            raise Refusal(f"{operand} has no counterpart that {instruction.mnemonic} can drive", "use SET and RST")
+        place = f"{self.target.special_bits}{self.masks[operand.number]}"
+        self.text.note(instruction.line, f"{operand} {self.says} while it is ON, {place} while it is OFF")
+        return self._line(instruction, name, (place,))
