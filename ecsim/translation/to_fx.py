@@ -115,8 +115,9 @@ class ToFX(Way):
                 elif instruction.mnemonic in ("EU", "ED"):
                     new = self._edge(instruction, open_blocks, branches)
                 elif following == "FOR" and str(self.places.operand(instruction.operands[0], instruction.written[0])) == "M8000":
-                    new = [self._loop(instructions[place + 1], "once there and never here")]
                     place += 1
+                    instruction = instructions[place]
+                    new = [self._loop(instruction, "once there and never here")]
                 elif self._drops(instruction):
                     new = []
                 else:
