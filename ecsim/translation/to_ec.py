@@ -25,6 +25,7 @@ NOTES = {
         "{name}: a result beyond the range goes on from the other end of the range there, from 0 here",
     ),
     **dict.fromkeys(("FX:OUT T", "FX:OUT T D", "FX:OUT T246", "FX:OUT T246 D"), "timers go on beyond their preset there"),
+    "FX:OUT C200": "counting down, the contact goes OFF on reaching the preset there and one count later here",
     "STL": "in the scan of a transition the step that is left is OFF there when the one that begins is ON",
     "FX:SEGD": "SEG clears the upper eight bits of its result",
 }
@@ -108,7 +109,7 @@ class ToEC(Way):
         if name.startswith("FX:"):
             raise Refusal(f"{self.target.name} has nothing that does the same")
         if instruction.mnemonic == "FX:OUT C":
-            self._contact_alone(instruction, "stops at its preset here and counts on there")
+            self._counter(instruction, "stops at its preset here and counts on there")
         self.places.same_widths(instruction, TABLE[name])
         return [self._line(instruction, name, self._operands(instruction))]
 

@@ -26,6 +26,7 @@ NOTES = {
     ),
     **dict.fromkeys(("TON", "TONR"), "timers stop at their preset there, and read one in a register when they start"),
     "CTU": "counters stop at their preset there",
+    "DCNT": "counting down, the contact goes OFF on reaching the preset here and one count later there",
     "SEG": "SEGD leaves the upper eight bits of its result as they are",
     "STL": "in the scan of a transition the step that is left stays ON there beside the one that begins",
 }
@@ -146,7 +147,7 @@ class ToFX(Way):
         if name is None:
             raise Refusal(f"{self.target.name} has nothing that does the same", HINTS.get(mnemonic, ""))
         if mnemonic == "CTU":
-            self._contact_alone(instruction, "counts on beyond its preset", "count with INC instead")
+            self._counter(instruction, "counts on beyond its preset", "count with INC instead")
         if name != "OUT":
             self.places.same_widths(instruction, self.rows[name])
         return [self._line(instruction, name, self._operands(instruction))]

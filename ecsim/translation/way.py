@@ -15,6 +15,11 @@ MASKS = {40 + number: 8050 + number for number in range(INPUTS)} | {66 + place: 
 SWAPPED = {"SET": "RST", "RST": "SET", "LD": "LDI", "LDI": "LD", "AND": "ANI", "ANI": "AND", "OR": "ORI", "ORI": "OR"}
 
 
+def _worth(operand):
+    """What an operand is however it is written: 5, K5 and 16#5 are the same."""
+    return operand.value if isinstance(operand, Constant) else operand
+
+
 class Way:
     """A program of one family in the words of the other, instruction by instruction."""
 
@@ -34,10 +39,21 @@ class Way:
             for spec, operand, written in zip(specs, instruction.operands, instruction.written, strict=True)
         )
 
-    def _contact_alone(self, coil: Instruction, words: str, hint: str = "") -> None:
-        """A counter goes on beyond its preset in one family and stops there in the other: refuse it where something looks at its value."""
-        device = coil.operands[0]
+    def _counter(self, coil: Instruction, words: str, hint: str = "") -> None:
+        """EC's counter goes on beyond its preset and its contact is compared in each scan; FX's stops there and its contact stays.
+
+        Refuse it where that can be seen: something looks at the value, two coils have other presets, or the preset is below 1.
+        """
+        device, preset = coil.operands
+        if isinstance(preset, Constant) and preset.value < 1:
+            raise Refusal(
+                f"with a preset below 1 the contact of {device} comes at once in EC and with the first count in FX", "give 1 or more"
+            )
+        if not isinstance(preset, Constant):
+            self.text.note(coil.line, "a preset that changes moves the contact in EC at once and in FX with the next count alone")
         for other in self.program.instructions:
+            if other.mnemonic == coil.mnemonic and other.operands[0] == device and _worth(other.operands[1]) != _worth(preset):
+                raise Refusal(f"{device} has another preset in line {other.line}", "count to one preset, and compare")
             for spec, operand in zip(other.definition.operands, other.operands, strict=False):
                 if operand == device and spec.type.words and other.definition.form != "always":
                     raise Refusal(f"{device} {words}, and line {other.line} looks at its value", hint)

@@ -191,6 +191,8 @@ def test_the_report_names_what_one_of_the_models_alone_keeps_without_power():
         ("LD X0\nENCO D0 D1", 2, "ENCO D0 D1: H2U has nothing"),
         ("LD X0\nDMOV D0 D10\nMOV D1 D20", 3, "D1 is a 16-bit number in line 3 and part of a 32-bit one in line 2"),
         ("LD X0\nCTU C0 5\nLD X0\nMOV C0 D0", 2, "counts on beyond its preset, and line 4 looks at its value"),
+        ("LD X0\nCTU C0 5\nLD X1\nCTU C0 16#6", 2, "C0 has another preset in line 4"),
+        ("LD X0\nCTU C0 0", 2, "with a preset below 1 the contact of C0 comes at once in EC"),
         ("LD X0\nOUT SM110", 2, "SM110 has no counterpart"),
         ("LD SM0\nMOV 3 SD111", 2, "SD111 has no counterpart"),
         ("LD X0\nTON T252 5", 2, "no free timer of 1 ms for T252"),
@@ -203,6 +205,31 @@ def test_the_report_names_what_one_of_the_models_alone_keeps_without_power():
 def test_what_cannot_be_kept_is_refused(text, line, words):
     found = refusals(text)
     assert [(place, message) for place, message, _ in found if words in message and place == line], found
+
+
+def test_counters_of_fx_with_two_presets_are_refused_too():
+    assert [line for line, _, _ in refusals("LD X0\nOUT C0 K5\nLD X1\nOUT C0 K6", "EC20", "H2U")] == [2, 4]
+    assert translate("LD X0\nOUT C0 K5\nLD X1\nOUT C0 H5", "EC20", "H2U").model == "EC20"
+    assert "a preset that changes" in translate("LD X0\nCTU C0 D5", "H2U").report()
+
+
+@pytest.mark.parametrize(
+    ("to", "model", "coil", "direction"), [("H2U", "EC20", "DCNT C200 2", "SM200"), ("EC20", "H2U", "OUT C200 K2", "M8200")]
+)
+def test_the_contact_of_a_counter_that_counts_down_goes_off_one_count_apart(to, model, coil, direction):
+    machines, done = twins(f"LD X0\n{coil}\nLD X1\nOUT {direction}\nLD C200\nOUT Y0", to, model)
+    assert "counting down, the contact goes OFF on reaching the preset" in done.report()
+    ends = {}
+    for plc in machines:
+        for down, counts in ((0, 3), (1, 2)):
+            plc["X1"] = down
+            for _ in range(counts):
+                for level in (0, 1):
+                    plc["X0"] = level
+                    plc.scan(2)
+                if down and not plc["Y0"]:
+                    ends.setdefault(plc.model.family, plc["C200"])
+    assert ends == {"EC": 2, "FX": 1}
 
 
 def test_a_loop_that_might_never_be_entered():
@@ -240,7 +267,7 @@ def test_what_the_other_compiler_refuses_is_told_of_the_own_line():
 
 # -- both do the same -------------------------------------------------------------------------------------------------------
 
-BITS = [f"X{n}" for n in range(6)] + [f"M{n}" for n in range(8)] + ["Y3", "T0", "T210", "C0", "C1"]
+BITS = [f"X{n}" for n in range(6)] + [f"M{n}" for n in range(8)] + ["Y3", "T0", "T210", "C0", "C1", "C2"]
 WORDS = [f"D{n}" for n in range(6)]
 PAIRS = ["D20", "D22", "D24"]
 contact = st.tuples(st.sampled_from(("", "I")), st.sampled_from(BITS))
@@ -251,7 +278,7 @@ output = st.one_of(
     st.sampled_from([f"OUT Y{n}" for n in range(8)] + [f"OUT M{n}" for n in range(8)]),
     st.sampled_from(["SET Y1", "RST Y1", "SET M3", "RST M3", "RST C0", "RST C1", "ZRST M0 4", "ZRST Y0 10"]),
     st.tuples(st.sampled_from(("TON T0", "TON T210", "TON T7")), st.integers(1, 12)).map(lambda each: f"{each[0]} {each[1]}"),
-    st.tuples(st.sampled_from(("CTU C0", "CTU C1")), st.integers(1, 5)).map(lambda each: f"{each[0]} {each[1]}"),
+    st.sampled_from(("CTU C0 1", "CTU C1 2", "CTU C2 4")),  # a counter has one preset
     st.tuples(st.one_of(word, number), word).map(lambda each: f"MOV {each[0]} {each[1]}"),
     st.tuples(st.sampled_from(("WAND", "WOR", "WXOR")), word, word, word).map(" ".join),
     st.tuples(st.sampled_from(("INC", "DEC")), word).map(" ".join),
