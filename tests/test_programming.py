@@ -6,6 +6,7 @@ import pytest
 
 import ecsim
 from ecsim import EcsimError, Plc, ProgramError, Project, SystemBlock
+from ecsim.assembler.printer import print_program
 from ecsim.protection import Passwords
 
 MINUTE = 60_000
@@ -237,6 +238,53 @@ def test_a_spoilt_sealed_text_is_told_and_changes_nothing(spoilt):
     with pytest.raises(ProgramError, match="is no instruction"):
         plc.load(project)
     assert plc.program is program
+
+
+CALLING_FX = """VAR_GLOBAL
+  Lamp AT Y0
+END_VAR
+
+LD X0
+OUT Lamp
+P1
+LD M8000
+CALL P10
+FEND
+
+// the secret
+P10 // called
+LD M8000
+MOV K3 D0
+SRET
+
+I101
+LD M8000
+INC D1
+IRET
+END
+"""
+
+
+@pytest.mark.parametrize("closed", [["P10"], ["MAIN"], ["I101"], ["P10", "I101"], ["MAIN", "P10", "I101"]])
+def test_closed_units_between_labels_are_carried_to_another_machine_unread(closed):
+    plc = Plc("H2U", input_filter_ms=0)
+    project = Project({"main.il": CALLING_FX}, protected=dict.fromkeys(closed, "sub7"))
+    plc.load(project)
+    text = plc.upload().files["main.il"]
+    assert not {"PROGRAM", "SUBROUTINE", "INTERRUPT"} & set(text.split())
+    assert ("MOV" in text, "INC" in text, "CALL" in text) == ("P10" not in closed, "I101" not in closed, "MAIN" not in closed)
+    assert "sub7" not in text
+    other = Plc("H2U", input_filter_ms=0)
+    other.load(Project({"main.il": text}))
+    assert [unit.name for unit in other.program.units if unit.closed] == closed
+    other.run()
+    other["X0"] = 1
+    other.scan()
+    assert (other["D0"], other["Y0"]) == (3, 1)
+    for name in closed:
+        other.unlock(name, "sub7")
+    opened = other.upload().files["main.il"]
+    assert print_program(ecsim.compile(opened, "H2U")) == print_program(ecsim.compile(CALLING_FX, "H2U"))
 
 
 # -- what an upload has of names and comments (2.1.5, error 45) ------------------------------------------------------------

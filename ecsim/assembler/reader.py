@@ -297,6 +297,12 @@ _MARK = re.compile(r"//|;")  # lists of this family have comments behind a semic
 _ENDS = {"SRET": "SUBROUTINE", "IRET": "INTERRUPT"}
 
 
+def pointer_name(word: str) -> str:
+    """The name of the part of a program that a pointer begins: P1, I001; "" for what is no pointer."""
+    pointer = _POINTER.fullmatch(word.upper())
+    return "" if pointer is None else f"I{int(pointer[2]):03d}" if pointer[1] == "I" else f"P{int(pointer[2])}"
+
+
 class _PointerReader(_Reader):
     """A text whose units are marked by pointers: the main program up to FEND, then P1 ... SRET and I101 ... IRET.
 
@@ -338,10 +344,9 @@ class _PointerReader(_Reader):
         self.title = []
 
     def _pointer(self, label: Statement, number: int) -> None:
-        report, name = self.source.report, label.operands[0]
+        report, name = self.source.report, pointer_name(label.operands[0])
         if number == self.syntax.end_label and label.mnemonic == "P":
-            report(label.line, f"{name} stands for END and is no label", "take another number", "3.8")
-        name = f"{label.mnemonic}{number:03d}" if label.mnemonic == "I" else f"P{number}"
+            report(label.line, f"{label.operands[0]} stands for END and is no label", "take another number", "3.8")
         first = self.pointers.setdefault(name, label.line)
         if first != label.line:
             report(label.line, f"{name} stands twice", f"it stands in {self.source.where(first)} already", "3.8")
