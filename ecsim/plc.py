@@ -110,7 +110,8 @@ class Plc(Programming, States):
         ]
         self.units |= {port.name: port for port in self.ports}
         self.timers = Timers(self.memory, self.clock)
-        self.steps = Steps(self.memory) if self.model.overlap else None
+        self._transitions = [False]  # whether those of the charts are held
+        self.steps = Steps(self.memory, self._transitions) if self.model.overlap else None
         self.clocks = Clocks(self.memory)
         self.running = False
         self.scans = 0
@@ -120,7 +121,6 @@ class Plc(Programming, States):
         self._engines: dict[type, CompiledEngine | SteppingEngine] = {}
         self._tracing = self._stepping = False
         self._asked = 0
-        self._transitions = [False]  # whether those of the charts are held
         self._spent = [0]  # ns that program and interrupt programs have taken since the main program ended the last time
         self._took_ns = self._program_ns = 0  # what that came to when it ended; what it takes without loops and calls
         self._limit_ns = 0  # what they may take
@@ -128,13 +128,13 @@ class Plc(Programming, States):
         self._first = True
         self._names: dict[str, Device] = {}
         self._special = self.memory.lists[self.model.special_bits], self.memory.lists[self.model.special_words]
-        constant = self.model.relays.get("constant scan")
-        self._governed = constant is not None and constant not in self.model.read_only_relays  # programs govern the machine
+        self._constant_relay = self.model.relays.get("constant scan")
+        self._governed = self._constant_relay not in (None, *self.model.read_only_relays)  # programs govern the machine
         numbers = self.model.registers
         by_ports = [number for port in self.ports for meaning, number in port.map.registers.items() if meaning in ("mode", "protocol")]
         if self._governed:
             self._orders = itemgetter(numbers["constant scan"], numbers["watchdog"], *by_ports)  # the registers that they do it by
-        self._told: tuple | None = None  # what they held when they were looked at last
+        self._told = None, ()  # what they held when they were looked at last
         self._services = {
             **functions(self.memory),
             "CLOCK": self.clock,
@@ -148,7 +148,7 @@ class Plc(Programming, States):
             "spend": self._spend,
             "SPENT": self._spent,
             "HELD": self._transitions,
-            "ENDING": self.steps.ending if self.steps else set(),
+            **({"ENDING": self.steps.ending, "hand_over": self.steps.hand_over} if self.steps else {}),
             "release": self.release,
             "placed": self.memory.placed,
             "machine": self,
@@ -264,19 +264,16 @@ class Plc(Programming, States):
         return max(self._constant_us, 1000, -(-self._took_ns // 1000))
 
     def _set_constant_scan(self, ms: int) -> None:
-        self._constant_us, self._told = 1000 * ms, None
+        self._constant_us, self._told = 1000 * ms, (None, ())
         self._fixed_us = 0 if self.scan_ms is None else max(round(self.scan_ms * 1000), self._constant_us)
 
     def _obey(self) -> None:
         """Do what the program tells the machine by special relays and registers: the constant scan, the watchdog."""
-        registers, numbers = self._special[1], self.model.registers
-        told = self._says("constant scan"), self._orders(registers)
-        if told == self._told:
-            return
-        self._told = told
-        ms = max(registers[numbers["constant scan"]], 0) if self._says("constant scan") else 0
+        (relays, registers), numbers = self._special, self.model.registers
+        ms = max(registers[numbers["constant scan"]], 0) if relays[self._constant_relay] else 0
         if 1000 * ms != self._constant_us:
             self._set_constant_scan(ms)
+        self._told = relays[self._constant_relay], self._orders(registers)
         self._watchdog_ns = 1_000_000 * max(registers[numbers["watchdog"]], 0)
         for port in self.ports:
             port.obey()
@@ -307,7 +304,9 @@ class Plc(Programming, States):
                 self.timers.advance()
             self._execute()
             if self._governed:
-                self._obey()
+                relays, registers = self._special
+                if relays[self._constant_relay] is not self._told[0] or self._orders(registers) != self._told[1]:
+                    self._obey()
             period = self._fixed_us or self._modelled_us()
             if self._first or period != self._noted_us:
                 self._housekeeping(period)
@@ -344,7 +343,7 @@ class Plc(Programming, States):
         try:
             if self._run_program():
                 self.stop()
-            if self.steps:
+            if self.steps and (self.steps.ending or True in self._special[0][self.steps.watched]):
                 self.steps.end()
             if spent[0] > self._limit_ns:
                 raise Overrun

@@ -494,10 +494,8 @@ class Writer:
         """A step handed over: the steps that the transition stands in end, at once or with the scan, the target begins (5.3.2)."""
         sources = [step.number for step in self.region.steps]
         if self.model.overlap:
-            ends = [*(f"ENDING.add({number})" for number in sources), f"ENDING.discard({target.number})"]
-        else:
-            ends = [f"S[{number}] = False" for number in sources]
-        return self._unless_held([*ends, f"S[{target.number}] = True"])
+            return [f"hand_over({', '.join(map(str, (target.number, *sources)))})"]
+        return self._unless_held([*(f"S[{number}] = False" for number in sources), f"S[{target.number}] = True"])
 
     def _unless_held(self, lines: list[str]) -> list[str]:
         """What a transition does, asked for in the scan in which it fires: nothing while transitions are held."""

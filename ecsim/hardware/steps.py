@@ -9,23 +9,37 @@ ANNUNCIATORS = 900  # from this step on they tell of trouble
 class Steps:
     """The steps of a family in which a step that is left stays ON up to the end of the scan."""
 
-    def __init__(self, memory: Memory):
-        self.memory = memory
-        self.ending: set[int] = set()  # generated code adds to it
+    def __init__(self, memory: Memory, held: list[bool]):
+        self.memory, self.held = memory, held
+        self.ending: set[int] = set()  # generated code takes out what it sets
         relays = memory.model.relays
+        self.bits, self.holds = memory.model.special_bits, relays["hold transitions"]
         self.asked = relays["monitor steps"], relays["monitor annunciators"]
         self.shown = relays["step active"], relays["annunciator"]
+        numbers = *self.asked, *self.shown
+        self.watched = slice(min(numbers), max(numbers) + 1)
+
+    def hand_over(self, target: int, source: int, *others: int) -> None:
+        """A transition: `target` begins, `source` and `others` end with the scan; nothing while transitions are held."""
+        lists = self.memory.lists
+        if not (self.held[0] or lists[self.bits][self.holds]):
+            ending = self.ending
+            ending.add(source)
+            if others:
+                ending.update(others)
+            ending.discard(target)
+            lists["S"][target] = True
 
     def end(self) -> None:
         """The program has ended."""
-        lists, ending = self.memory.lists, self.ending
-        if ending:
+        lists = self.memory.lists
+        if self.ending:
             steps = lists["S"]
-            for number in ending:
+            for number in self.ending:
                 steps[number] = False
-            ending.clear()
-        relays = lists[self.memory.model.special_bits]
-        if relays[self.asked[0]] or relays[self.asked[1]] or relays[self.shown[0]] or relays[self.shown[1]]:
+            self.ending.clear()
+        relays = lists[self.bits]
+        if True in relays[self.watched]:  # the four lie side by side
             self._monitor(relays)
 
     def _monitor(self, relays: list[bool]) -> None:
