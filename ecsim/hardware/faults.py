@@ -123,6 +123,7 @@ _FX_ROWS = (
     Error(6703, "the interrupt queue is full"),
     Error(6706, "the value of an operand is illegal, or the number of its device is out of range"),
     Error(6708, "a special module does not exist or did not answer"),
+    Error(6760, "the servo did not answer in time, or its answer has a wrong checksum"),
 )
 KNOWN = ERRORS | {row.code: replace(row, models=FX) for row in _FX_ROWS}
 MEANINGS = {code: row.meaning for code, row in ERRORS.items()}

@@ -175,6 +175,15 @@ def test_an_operation_error_stands_in_m8067_and_d8067_and_is_latched(model, engi
     assert plc["M8068"] == 0
 
 
+@both_models
+def test_a_servo_that_does_not_answer_leaves_the_other_special_devices_alone(model):
+    plc = machine("LD X0\nDABS X10 Y10 D0", model)
+    plc["X0"] = 1
+    plc.until("M8067", timeout_ms=10_000)
+    assert values(plc, "D8067", "M8004", "D8004", "D8000", "M8000") == [6760, 1, 8067, 200, 1]
+    assert [error.code for error in plc.errors] == [6760]
+
+
 def test_a_program_may_reset_the_latch():
     plc = machine(FAULTY + "\nLD X1\nRST M8068")
     plc["X0"] = 1
