@@ -13,10 +13,9 @@ from typing import Any
 
 from ecsim import help as help_on
 from ecsim.help import EXAMPLES, OWN, Page, Section, examples, section_title, sections
-from ecsim.help_spelled import Group, SpelledPage, group_title, groups, names_of
+from ecsim.help_spelled import Group, SpelledPage, group_title, groups, named, names_of
 from ecsim.instructions import TABLE
 from ecsim.models import MODELS
-from ecsim.models.fx_spelling import plain
 from ecsim.scenario import load_cases, run_case
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -35,10 +34,12 @@ def chosen_examples() -> dict[str, dict[str, Any]]:
             mnemonic = case["mnemonic"].partition(" ")[0]  # "SET Sxx": SET in a step
             if case.get("compile_error"):
                 continue
-            spelled = MODELS[case["models"][0]].spelling
-            if spelled and mnemonic in case["il"].split():
-                candidates.setdefault(f"FX {plain(mnemonic)}", []).append(case)
-            elif not spelled and mnemonic in TABLE:
+            model = MODELS[case["models"][0]]
+            if model.spelling:
+                name = named(mnemonic, model)
+                if name in (named(word, model) for word in case["il"].split()):
+                    candidates.setdefault(f"FX {name}", []).append(case)
+            elif mnemonic in TABLE:
                 candidates.setdefault(mnemonic, []).append(case)
     found = {}
     for mnemonic in sorted(candidates):
@@ -49,14 +50,17 @@ def chosen_examples() -> dict[str, dict[str, Any]]:
 
 
 def _rank(case: dict[str, Any]) -> tuple:
-    """Cases of the instruction's own section and worked examples first; then cases without an error, on more models, and short ones."""
-    steps = case["steps"]
+    """Cases of the instruction's own section, its plain name and worked examples first; then cases without an error, on more models, short ones."""
+    steps, model = case["steps"], MODELS[case["models"][0]]
     row = TABLE.get(case["mnemonic"].partition(" ")[0])
-    own = row is None or case["section"] == row.section
+    own = bool(model.spelling) or row is None or case["section"] == row.section
     size = len(case["il"].split("\n")) + sum(1 + len(step.get("set", ())) + len(step.get("expect", ())) for step in steps)
-    fails = any(step.get("error") for step in steps)
+    fault = "{}{}".format(*model.flag("fault"))
+    fails = any(step.get("error") or step.get("expect", {}).get(fault) for step in steps)
     shows = any(value for step in steps for value in step.get("expect", {}).values()) and not any("expect_range" in step for step in steps)
-    return not own, ("example", "text", "derived").index(case["source"]), fails, not shows, -len(case["models"]), size, case["id"]
+    plain = case["mnemonic"].partition(" ")[0] in case["il"].split()
+    shortest = () if model.spelling else (size, case["id"])  # the cases of H1U and H2U begin with the usual one
+    return not own, not plain, ("example", "text", "derived").index(case["source"]), fails, not shows, -len(case["models"]), *shortest
 
 
 def _passes(case: dict[str, Any]) -> bool:

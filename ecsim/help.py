@@ -18,7 +18,7 @@ from .errors import OPERAND, RANGE, EcsimError
 from .hardware.faults import MEANINGS
 from .instructions import TABLE, Definition
 from .instructions.signature import OperandSpec
-from .models import MODELS, get_model
+from .models import MODELS, Model, get_model
 
 OWN = {name: row for name, row in TABLE.items() if not name.startswith("FX:")}  # the instructions of EC
 EXAMPLES = Path(__file__).with_name("help_examples.json")
@@ -238,7 +238,7 @@ class Page(Shown):
             found += [Heading("Flags"), Items(self._flags())]
         codes = fault_codes(row)
         if codes:
-            found += [Heading("Errors"), Items(tuple(self._error(code, where) for code, where in codes.items()))]
+            found += [Heading("Errors"), Items(tuple(error_words(MODELS[row.models[0]], code, where) for code, where in codes.items()))]
         return (*found, *self._example())
 
     def _facts(self) -> tuple[str, ...]:
@@ -282,10 +282,6 @@ class Page(Shown):
         flags = ("{} ({}{})".format(flag, *model.flag(flag)) for flag in self.definition.flags)
         return (f"{', '.join(flags)}: set or cleared by each execution",)
 
-    @staticmethod
-    def _error(code: int, where: str) -> str:
-        return f"{code}: {MEANINGS.get(code, 'an error')}" + (f" ({where})" if where else "")
-
     def _example(self) -> list[Part]:
         return example_parts(self.example) if self.example else []
 
@@ -295,17 +291,22 @@ def example_parts(case: dict[str, Any]) -> list[Part]:
     return [Heading("Example"), Words(_sentence(case["note"])), Code(case["il"].strip("\n")), Items(tuple(_story(case)))]
 
 
+def error_words(model: Model, code: int, where: str) -> str:
+    """An execution error with the number that the model has for it, and where it comes from."""
+    return f"{model.fault_code(code)}: {MEANINGS.get(code, 'an error')}" + (f" ({where})" if where else "")
+
+
 def device_words(areas: Iterable[str]) -> str:
     """Areas as a page names them."""
     names = {"const": "constant", "routine": "name of a subroutine"}
     return " ".join(names.get(area, area) for area in areas)
 
 
-def remark(spec: OperandSpec) -> str:
-    """What is particular about an operand: its range, its span."""
+def remark(spec: OperandSpec, pointer: str = "") -> str:
+    """What is particular about an operand: its range, with the letter of a pointer, and its span."""
     remarks = []
     if spec.range:
-        area = "" if "const" in spec.areas else spec.order[0]
+        area = pointer if "const" in spec.areas else spec.order[0]
         remarks.append(f"{area}{spec.range[0]} to {area}{spec.range[1]}")
     if spec.whole:
         remarks.append(f"a Kn string as K{spec.type.bits // 4}")

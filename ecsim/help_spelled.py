@@ -1,12 +1,10 @@
 """Help on the instructions of a family that spells TABLE's rows in its own way: H1U and H2U."""
 
-import re
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from typing import Any
 
 from .assembler.operands import Resolver
-from .hardware.faults import MEANINGS
 from .help import (
     BUS,
     FORMS,
@@ -20,17 +18,17 @@ from .help import (
     Shown,
     Words,
     device_words,
+    error_words,
     example_parts,
     examples,
     fault_codes,
     remark,
 )
 from .instructions import TABLE, Definition
-from .instructions.spelling import pulse_forms_of, section_of
+from .instructions.spelling import pulse_forms_of, section_of, told
 from .models import MODELS, By, Model
 from .models.fx_spelling import ALL_KNOWN, LOOKED_UP, REFERENCE, STATED, plain
 
-_SECTION = re.compile(r"\s*\((?:(?:see )?\d+\.\d[\d.]*(?:, \d[\d.]*)*|S[MD]\d+)\)")  # places and relays of the other family
 _GROUPS = {"3.8": "4.1", "4.1.1": "4.1"}
 
 
@@ -57,6 +55,17 @@ def _forms(model: str) -> dict[str, list[str]]:
     }
 
 
+@cache
+def _listed(model: str) -> dict[str, str]:
+    return {form: name for name, forms in _forms(model).items() for form in (*forms, name)}
+
+
+def named(word: str, model: Model) -> str:
+    """The name by which the manual lists what a word of a program spells, in any form, or as a pointer: P of P10; "" for other words."""
+    known = _listed(model.name)
+    return known.get(word) or known.get(word.rstrip("0123456789"), "")
+
+
 def groups(model: Model) -> dict[str, list[str]]:
     """The instructions in tens of their function numbers, the basic ones first: "4.1", "FNC 00", "FNC 10" ..."""
     found: dict[str, list[str]] = {}
@@ -77,10 +86,10 @@ def _rows(model: Model, spelled: str) -> list[Definition]:
     return [TABLE[key] for key in dict.fromkeys(meant.keys if isinstance(meant, By) else (meant,))]
 
 
-def _said(row: Definition) -> list[str]:
-    """What an instruction does, a paragraph each, without the sections of the other manual."""
+def _said(model: Model, row: Definition) -> list[str]:
+    """What an instruction does, a paragraph each."""
     paragraphs = (row.function.__doc__ or "").strip().split("\n\n")
-    return [_SECTION.sub("", " ".join(paragraph.split())) for paragraph in paragraphs]
+    return [told(model, row, " ".join(paragraph.split())) for paragraph in paragraphs]
 
 
 def how_sure(name: str) -> str:
@@ -112,7 +121,7 @@ class SpelledPage(Shown):
     @property
     def title(self) -> str:
         """What it does, in a sentence."""
-        return _said(self._first)[0]
+        return _said(self.model, self._first)[0]
 
     @property
     def _first(self) -> Definition:
@@ -127,7 +136,7 @@ class SpelledPage(Shown):
     def parts(self) -> tuple[Part, ...]:
         first = self._first
         models = [model.name for model in MODELS.values() if model.family == self.model.family and self.name in names_of(model)]
-        found: list[Part] = [Heading(self.name, 1), *map(Words, _said(first))]
+        found: list[Part] = [Heading(self.name, 1), *map(Words, _said(self.model, first))]
         found.append(
             Items(
                 (
@@ -139,38 +148,41 @@ class SpelledPage(Shown):
                 )
             )
         )
-        told: list[Definition] = []
+        shown: list[Definition] = []
         for spelled in names_of(self.model)[self.name]:
             for row in _rows(self.model, spelled):
-                if row not in told:
+                if row not in shown:
                     found += self._row(spelled, row, alone=row is first)
-                    told.append(row)
-        flags = sorted({flag for row in told for flag in row.flags})
+                    shown.append(row)
+        flags = sorted({flag for row in shown for flag in row.flags})
         if flags:
             numbers = ("{} ({}{})".format(flag, *self.model.flag(flag)) for flag in flags)
             found += [Heading("Flags"), Items((f"{', '.join(numbers)}: set or cleared by each execution",))]
-        codes = {code: where for row in told for code, where in fault_codes(row).items()}
+        codes = {code: where for row in shown for code, where in fault_codes(row).items()}
         if codes:
-            lines = (f"{MEANINGS.get(code, 'an error')}" + (f" ({where})" if where else "") for code, where in sorted(codes.items()))
-            found += [Heading("Errors"), Items(tuple(lines))]
+            found += [Heading("Errors"), Items(tuple(error_words(self.model, code, where) for code, where in sorted(codes.items())))]
         return (*found, *(example_parts(self.example) if self.example else ()))
 
     def _row(self, spelled: str, row: Definition, alone: bool) -> list[Part]:
         """One way to write it: its operands, and what it does where that is not said yet."""
-        said = [] if alone or row.function is self._first.function else [Words(_said(row)[0])]
-        parts: list[Part] = [Code(" ".join([spelled, *(spec.name for spec in row.operands)])), *said]
+        said = [] if alone or row.function is self._first.function else [Words(_said(self.model, row)[0])]
+        pointers = self.model.syntax.pointers
+        label = spelled in pointers.values()  # is one word, P10
+        names = ["n" if label else spec.name for spec in row.operands]
+        parts: list[Part] = [Code(("" if label else " ").join([spelled, *names])), *said]
         if row.operands:
             resolver = Resolver(self.model, {})
+            letters = pointers | {"ROUTINE": pointers["LABEL"]}
             rows = tuple(
                 (
-                    spec.name,
+                    name,
                     USES[spec.read, spec.written],
                     spec.type.name,
                     "yes" if spec.indexed else "no",
-                    device_words(resolver.areas(spec)),
-                    remark(replace(spec, range=self.model.operand_ranges.get(spec.kind, spec.range))),
+                    letters.get(spec.kind) or device_words(resolver.areas(spec)),
+                    remark(replace(spec, range=self.model.operand_ranges.get(spec.kind, spec.range)), letters.get(spec.kind, "")),
                 )
-                for spec in row.operands
+                for name, spec in zip(names, row.operands, strict=True)
             )
             parts.append(Rows(("operand", "use", "type", "index", "devices", "remark"), rows))
         return parts
@@ -207,7 +219,6 @@ def find(name: str, model: Model) -> SpelledPage | Group | SpelledContents | Non
     """The page of an instruction in any of its forms, of a group, or of all; None for what the model has not."""
     if not name:
         return SpelledContents(model)
-    known = {form: listed for listed, forms in _forms(model.name).items() for form in (*forms, listed)}
-    if name in known:
-        return SpelledPage(known[name], model)
+    if name in _listed(model.name):
+        return SpelledPage(_listed(model.name)[name], model)
     return Group(name, model) if name in groups(model) else None

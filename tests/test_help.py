@@ -12,11 +12,10 @@ from ecsim.assembler.reader import HEADERS
 from ecsim.cli import main
 from ecsim.errors import WATCHDOG
 from ecsim.help import OWN, Contents, Page, Section, examples, fault_codes, section_title, sections
-from ecsim.help_spelled import names_of
+from ecsim.help_spelled import named, names_of
 from ecsim.instructions import TABLE
 from ecsim.instructions.define import BOTH
 from ecsim.models import MODELS
-from ecsim.models.fx_spelling import plain
 from ecsim.scenario import load_cases, run_case
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -55,7 +54,8 @@ def test_every_instruction_has_a_page_with_its_row(mnemonic):
 @pytest.mark.parametrize(("mnemonic", "case"), examples().items(), ids=list(examples()))
 @pytest.mark.parametrize("tracing", [False, True], ids=["compiled", "stepping"])
 def test_every_example_comes_out_as_told(mnemonic, case, tracing):
-    assert mnemonic.removeprefix("FX ") in [plain(word) if mnemonic.startswith("FX ") else word for word in case["il"].upper().split()]
+    words = case["il"].upper().split()
+    assert mnemonic.removeprefix("FX ") in ([named(word, MODELS["H2U"]) for word in words] if mnemonic.startswith("FX ") else words)
     for model in case["models"]:
         verdict = run_case(case, model, tracing)
         assert verdict.passed, str(verdict)
@@ -97,7 +97,7 @@ def test_an_example_is_one_of_the_conformance_cases(builder):
     for mnemonic, example in examples().items():
         case = cases[example["id"]]
         name = case["mnemonic"].partition(" ")[0]
-        assert (f"FX {plain(name)}" if case["models"][0] not in BOTH else name) == mnemonic
+        assert (f"FX {named(name, MODELS['H2U'])}" if case["models"][0] not in BOTH else name) == mnemonic
         assert example == {key: case[key] for key in builder.KEPT if key in case}, f"run: {BUILD}"
 
 

@@ -2,12 +2,14 @@
 
 import json
 import re
+from itertools import takewhile
 from pathlib import Path
 
 import pytest
 
 import ecsim
 from ecsim.cli import main
+from ecsim.help import Heading, Rows, Words
 from ecsim.help_spelled import Group, SpelledContents, SpelledPage, groups, names_of
 from ecsim.models import MODELS
 
@@ -47,6 +49,35 @@ def test_the_section_is_the_function_number_and_the_models_are_told():
     assert "forms: ROR, RORP, DROR, DRORP" in text
     assert "carry (M8022)" in text
     assert "models: H1U, H2U" in str(ecsim.help("ADD", "H2U"))
+
+
+@pytest.mark.parametrize("name", sorted(names_of(H2U)))
+def test_a_page_speaks_of_its_own_operands_and_of_the_codes_of_the_family(name):
+    page = ecsim.help(name, "H2U")
+    told = [part.words for part in takewhile(lambda part: part != Heading("Example"), page.parts) if isinstance(part, Words)]
+    named = {cells[0] for part in page.parts if isinstance(part, Rows) for cells in part.rows}
+    devices = {"IST": {"S0", "S1", "S2"}, "PRUN": {"M", "M0", "M7"}, "SET": {"S"}, "OUT": {"S", "M8"}}.get(name, set())
+    assert {word for words in told for word in re.findall(r"\b[SDMN]\d?\b", words)} - named == devices - named
+    codes = {int(code) for code in re.findall(r"\berror (\d+)|^  (\d+): ", str(page), re.MULTILINE) for code in code if code}
+    assert codes <= set(H2U.fault_codes.values())
+
+
+def test_a_page_of_an_instruction_that_both_families_have_names_the_operands_of_the_model():
+    assert "The N1 bits from D on move N2 places to lower numbers; the N2 bits from S on come in" in str(ecsim.help("SFTR", "H2U"))
+    assert "The S2 bits from D on move S3 places to lower numbers; the S3 bits from S1 on come in" in str(ecsim.help("SFTR"))
+    assert "division by 0 is error 6706" in str(ecsim.help("EDIV", "H2U"))
+    assert "6706: division by zero" in str(ecsim.help("EDIV", "H2U"))
+    assert "69: division by zero" in str(ecsim.help("RDIV"))
+
+
+def test_pointers_are_told_as_they_are_written():
+    assert "\n    Pn\n" in str(ecsim.help("P", "H2U"))
+    assert re.search(r"^  n +read +INT +no +P +P0 to P127$", str(ecsim.help("P", "H2U")), re.MULTILINE)
+    assert re.search(r"^  S +read .* P +P0 to P127$", str(ecsim.help("CJ", "H2U")), re.MULTILINE)
+
+
+def test_every_instruction_has_an_example():
+    assert [name for name in names_of(H2U) if ecsim.help(name, "H2U").example is None] == []
 
 
 def test_all_forms_of_out_are_on_its_page():

@@ -65,7 +65,7 @@ def stop(code):
 
 @emitted("CALL", "S:ROUTINE", steps=None, section="6.1.11", pulsed=True)
 def call(code, routine, *arguments):
-    """Execute a subroutine with the values of its variables while the flow is ON."""
+    """Execute a subroutine, with values for its variables where it has some, while the flow is ON."""
     code.call(routine.text, arguments)
 
 

@@ -1,4 +1,6 @@
-"""TABLE as a model spells it: which rows its programs can name, and how."""
+"""TABLE as a model spells it: which rows its programs can name, how, and in which words it tells of them."""
+
+import re
 
 from ..models.model import By, Model
 from .define import TABLE, Definition
@@ -16,6 +18,21 @@ def section_of(model: Model, spelled: str, row: Definition) -> str:
     if not model.functions:
         return row.section
     return model.functions.get(spelled) or model.functions.get(spelled.removesuffix(model.pulse_suffix)) or row.section
+
+
+_PLACE = re.compile(r"\s*\((?:(?:see )?\d+\.\d[\d.]*(?:, \d[\d.]*)*|S[MD]\d+)\)")  # places and relays of the manual whose words they are
+_CODE = re.compile(r"\berror (\d+)\b")
+
+
+def told(model: Model, row: Definition, words: str) -> str:
+    """What the function of a row says of itself as the model says it: with its own row's operands, the model's codes, without EC's sections."""
+    if not model.spelling:
+        return words
+    first = next(other for other in TABLE.values() if other.function is row.function)  # the row that the words were written for
+    names = {spec.name: own.name for spec, own in zip(first.operands, row.operands, strict=True)}
+    if names:
+        words = re.sub(rf"\b({'|'.join(names)})\b", lambda match: names[match[1]], words)
+    return _CODE.sub(lambda match: f"error {model.fault_code(int(match[1]))}", _PLACE.sub("", words))
 
 
 def pulse_forms_of(model: Model) -> dict[str, Definition]:

@@ -2,6 +2,7 @@
 
 from ..devices import Bits, Constant, Device, Name
 from ..instructions import TABLE
+from ..instructions.spelling import told
 from ..models import Model
 from . import svg as s
 from .labels import COILS, EDGES, GATES, Label, Labels, constant_value, contact_words, figure, inverted, output_words, sign
@@ -240,7 +241,9 @@ def spoken(word: Word, labels: Labels) -> str:
 def tip(word: Word, labels: Labels) -> str:
     """What the pointer learns about an element: itself in words, what it does, its comment, its step."""
     own = "" if labels.unit.kind == "MAIN" or not labels.own(word) else labels.unit.name
-    lines = [spoken(word, labels), TABLE[word.mnemonic].title, *labels.comment(word), f"step {word.step}" if word.step >= 0 else ""]
+    row = TABLE[word.mnemonic]
+    does = told(labels.program.model, row, row.title) if labels.program else row.title
+    lines = [spoken(word, labels), does, *labels.comment(word), f"step {word.step}" if word.step >= 0 else ""]
     lines.append(f"a value of {own}'s own is there only after a call in the scan that is shown" if own else "")
     return s.tip("\n".join(filter(None, lines)))
 
