@@ -24,7 +24,7 @@ MESSAGES = st.binary(max_size=253) | st.builds(
 )
 
 
-@pytest.mark.parametrize("model", [name for name, model in MODELS.items() if model.family == "EC"])  # whose map the oracle has
+@pytest.mark.parametrize("model", MODELS)
 def test_mutated_frames_are_answered_as_the_manual_says(model):
     outcomes, faults = fuzz.attack(2500, seed=7, model=model)
     assert faults == []
@@ -41,9 +41,24 @@ def test_the_oracle_notices_a_wrong_answer():
     assert fuzz.wrong(read[:-1], rtu_encode(1, b"\3\2\0\0"), False)
 
 
+@pytest.mark.parametrize(
+    ("model", "message", "code"),
+    [  # reading a step, 32-bit counters in a middle, the last M of each model, inputs by function 2
+        ("H2U", "01 E000 0001", 0), ("EC20", "01 E000 0001", 2), ("H2U", "03 F701 0002", 2), ("H2U", "03 F702 0002", 0),
+        ("H2U", "01 0BFF 0001", 0), ("H2U", "01 0C00 0001", 2), ("H1U", "01 0600 0001", 2), ("H1U", "01 05FF 0001", 0),
+        ("H2U", "02 F800 0008", 0), ("EC20", "02 0000 0008", 0), ("H2U", "06 F700 0001", 2), ("H2U", "01 FD00 0001", 2),
+    ],
+)  # fmt: skip
+def test_the_oracle_knows_the_addresses_of_each_model(model, message, code):
+    message = bytes.fromhex(message)
+    assert fuzz.exception(message, model) == code
+    assert (Slave(Memory(MODELS[model])).answer(message)[0] >= 0x80) == bool(code)
+
+
+@pytest.mark.parametrize("model", ["EC20", "H2U"])
 @given(message=MESSAGES)
-def test_any_message_has_an_answer_of_its_function(message):
-    slave = Slave(Memory(MODELS["EC20"]))
+def test_any_message_has_an_answer_of_its_function(message, model):
+    slave = Slave(Memory(MODELS[model]))
     answer = slave.answer(message)
     if slave.listening:
         assert answer is None
