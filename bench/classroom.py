@@ -6,11 +6,12 @@ python bench/classroom.py [NAME] [--count N] [--workers N] [--write]     --write
 import argparse
 import os
 import random
-import re
 import resource
 import tempfile
 import time
 from pathlib import Path
+
+import pages
 
 from ecsim.grading import find_exercise
 from ecsim.grading.classroom import grade_class
@@ -18,8 +19,6 @@ from ecsim.grading.edits import edits
 from ecsim.grading.sandbox import Judge, Submission
 from ecsim.models import model_in
 
-PAGE = Path(__file__).resolve().parent.parent / "docs" / "performance.md"
-BEGIN, END = "<!-- class -->", "<!-- /class -->"
 LOOP = "LBL 1\nLD SM0\nCJ 1\n"  # the watchdog ends it
 REFUSED = ("LD X0\nOUT Q0\n", "import os\n", "LD X0\n", "STL S0\nSTL\n")
 
@@ -67,7 +66,7 @@ def main():
     parser.add_argument("name", nargs="?", default="mixer")
     parser.add_argument("--count", type=int, default=200)
     parser.add_argument("--workers", type=int, default=os.cpu_count())
-    parser.add_argument("--write", action="store_true", help=f"write the table into {PAGE.name}")
+    parser.add_argument("--write", action="store_true", help=f"write the table into {pages.PERFORMANCE.name}")
     options = parser.parse_args()
     one, alone, took, cpu, full, none, count = measured(options.name, options.count, options.workers)
     table = "\n".join(
@@ -82,8 +81,7 @@ def main():
     )
     print(table)
     if options.write:
-        text = PAGE.read_text(encoding="utf-8")
-        PAGE.write_text(re.sub(rf"{BEGIN}.*?{END}", lambda _: f"{BEGIN}\n\n{table}\n\n{END}", text, flags=re.DOTALL), encoding="utf-8")
+        pages.put(pages.PERFORMANCE, "classroom", table.splitlines())
     return 0 if alone < 2 and took < 90 else 1
 
 

@@ -8,12 +8,11 @@ import statistics
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
+
+import pages
 
 import ecsim
 
-PAGE = Path(__file__).resolve().parent.parent / "docs" / "performance.md"
-BEGIN, END = "<!-- events -->", "<!-- /events -->"
 REPEATS = 5
 TIMED = "PROGRAM MAIN\nLD SM1\nMOV 10 SD66\nEI\nSET SM66\nEND_PROGRAM\nINTERRUPT I EVENT 26\nLD SM0\nINC D0\nEND_INTERRUPT"
 
@@ -110,11 +109,7 @@ def main() -> None:
         lines.append(f"| {title} | {shown} | {f'{bound} {unit}' if bound else ''} |")
         print(lines[-1], flush=True)
     if chosen.write:
-        page = PAGE.read_text(encoding="utf-8") if PAGE.exists() else "# Performance\n"
-        if BEGIN not in page:
-            page += f"\n## Between two scans\n\n{BEGIN}\n{END}\n"
-        before, _, rest = page.partition(BEGIN)
-        PAGE.write_text("\n".join([before + BEGIN, "", *lines, "", END + rest.partition(END)[2]]), encoding="utf-8")
+        pages.put(pages.PERFORMANCE, "events", lines)
 
 
 if __name__ == "__main__":

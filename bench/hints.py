@@ -7,16 +7,13 @@ that hold them. A line that is missing counts for the networks on both sides of 
 """
 
 import argparse
-import re
 import time
 from difflib import SequenceMatcher
-from pathlib import Path
+
+import pages
 
 from ecsim.grading import exercise_names, find_exercise
 from ecsim.grading.hints import ALL, NONE, SOME, suspect
-
-PAGE = Path(__file__).resolve().parent.parent / "docs" / "grading.md"
-BEGIN, END = "<!-- written by bench/hints.py: begin -->", "<!-- end of hints -->"
 
 
 def code(text):
@@ -78,7 +75,7 @@ def main():
     """Measure the exercises named, or all; 0 when four of five hints are right."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*", help="exercises; all of them unless named")
-    parser.add_argument("--write", action="store_true", help=f"write the table into {PAGE.name}")
+    parser.add_argument("--write", action="store_true", help=f"write the table into {pages.GRADING.name}")
     options = parser.parse_args()
     rows = [measured(name) for name in options.names or exercise_names()]
     right, total = sum(row[0] for row in rows), sum(row[1] for row in rows)
@@ -89,8 +86,7 @@ def main():
     table = "\n".join([*head, *(row for _, _, row in rows), f"| all | {total} | | | | {right} of {total} | |"])
     print(table)
     if options.write:
-        text = PAGE.read_text(encoding="utf-8")
-        PAGE.write_text(re.sub(rf"{BEGIN}.*?{END}", lambda _: f"{BEGIN}\n\n{table}\n\n{END}", text, flags=re.DOTALL), encoding="utf-8")
+        pages.put(pages.GRADING, "hints", table.splitlines())
     return 0 if right >= 0.8 * total else 1
 
 

@@ -15,15 +15,13 @@ import statistics
 import struct
 import time
 from dataclasses import dataclass, field
-from pathlib import Path
 
+import pages
 from programs import LOGIC
 from prototype import Prototype
 
 import ecsim
 
-PAGE = Path(__file__).resolve().parent.parent / "docs" / "performance.md"
-BEGIN, END = "<!-- instructions -->", "<!-- /instructions -->"
 TURNS = 60
 TURN_NS = 2_000_000
 RUNGS, CHAIN = 20, 10
@@ -170,11 +168,7 @@ def main() -> None:
     ]
     print("\n".join(lines))
     if chosen.write:
-        page = PAGE.read_text(encoding="utf-8")
-        if BEGIN not in page:
-            page += f"\n## Application instructions\n\n{BEGIN}\n{END}\n"
-        before, _, rest = page.partition(BEGIN)
-        PAGE.write_text("\n".join([before + BEGIN, "", *lines, "", END + rest.partition(END)[2]]), encoding="utf-8")
+        pages.put(pages.PERFORMANCE, "instructions", lines)
 
 
 if __name__ == "__main__":

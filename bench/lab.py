@@ -9,41 +9,13 @@ while the program changes them all. Needs the browser test's Chromium. `--write`
 import argparse
 import json
 import os
-import re
-import secrets
 import shutil
-import socket
 import statistics
-import subprocess
-import sys
-import tempfile
-import threading
-from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
+import pages
+from labserver import CONNECTED, COUNT_FRAMES, EVALUATE, page_of
+
 STEPS, RUNGS, DEVICES, CLICKS = 30, 100, 200, 25
-KERNEL = {"display_name": "Python 3", "language": "python", "name": "python3"}
-CONNECTED = """() => {
-  const context = window.jupyterapp?.shell.currentWidget?.sessionContext;
-  return Boolean(context?.isReady && context.session?.kernel?.connectionStatus === 'connected');
-}"""
-EVALUATE = """async (code) => {
-  const kernel = window.jupyterapp.shell.currentWidget.sessionContext.session.kernel;
-  const future = kernel.requestExecute({ code, store_history: false });
-  let text = '';
-  future.onIOPub = (message) => {
-    if (message.header.msg_type === 'stream') text += message.content.text;
-    if (message.header.msg_type === 'error') text += message.content.evalue;
-  };
-  await future.done;
-  return text.trim();
-}"""
-COUNT_FRAMES = """(ms) => new Promise((done) => {
-  let count = 0;
-  const began = performance.now();
-  const step = (now) => (now - began < ms ? (count++, requestAnimationFrame(step)) : done((1000 * count) / (now - began)));
-  requestAnimationFrame(step);
-})"""
 CLICK = """() => { const now = Date.now(); document.querySelector('[data-testid=X5]').click(); return now; }"""
 PREPARE = """
 import time
@@ -71,82 +43,41 @@ def program() -> str:
     return "\n".join(text)
 
 
-def notebook(place: Path) -> None:
-    """A notebook of one cell that shows the lab."""
-    code = f"from ecsim_widgets import Lab\nlab = Lab('EC20', {program()!r}, devices=['D0-D{DEVICES - 1}'])\nlab"
-    cell = {"cell_type": "code", "execution_count": None, "id": "lab", "metadata": {}, "outputs": [], "source": code}
-    place.write_text(
-        json.dumps({"cells": [cell], "metadata": {"kernelspec": KERNEL}, "nbformat": 4, "nbformat_minor": 5}), encoding="utf-8"
-    )
-
-
-def serve(folder: Path, home: Path) -> tuple[subprocess.Popen, str, str]:
-    """A JupyterLab on a folder: its process, address and token."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
-    token = secrets.token_hex(16)
-    names = (
-        "JUPYTER_CONFIG_DIR",
-        "JUPYTER_DATA_DIR",
-        "JUPYTER_RUNTIME_DIR",
-        "JUPYTERLAB_SETTINGS_DIR",
-        "JUPYTERLAB_WORKSPACES_DIR",
-        "IPYTHONDIR",
-    )
-    environment = {**os.environ, **{name: str(home / name.lower()) for name in names}, "JUPYTER_CONFIG_PATH": str(ROOT)}
-    command = [sys.executable, "-m", "jupyterlab", "--no-browser", "--expose-app-in-browser", "--ServerApp.ip=127.0.0.1", "--allow-root"]
-    command += [f"--ServerApp.port={port}", f"--IdentityProvider.token={token}", f"--ServerApp.root_dir={folder}"]
-    process = subprocess.Popen(
-        command, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
-    )
-    if not any("is running at" in line for line in process.stdout):
-        raise SystemExit("JupyterLab did not start")
-    threading.Thread(target=process.stdout.read, daemon=True).start()
-    return process, f"http://127.0.0.1:{port}", token
+def lab() -> str:
+    """The cell that shows the lab."""
+    return f"from ecsim_widgets import Lab\nlab = Lab('EC20', {program()!r}, devices=['D0-D{DEVICES - 1}'])\nlab"
 
 
 def measure(browser: str, seconds: float) -> dict[str, float]:
     """All figures of one run."""
-    from playwright.sync_api import sync_playwright
+    with page_of(lab(), browser) as (page, address):
+        octets = [0]
+        sockets = page.context.new_cdp_session(page)
+        sockets.send("Network.enable")
 
-    with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryDirectory() as home, sync_playwright() as playwright:
-        notebook(Path(folder) / "lab.ipynb")
-        process, address, token = serve(Path(folder), Path(home))
-        chromium = playwright.chromium.launch(executable_path=browser, args=("--headless=new", "--no-sandbox", "--disable-dev-shm-usage"))
-        try:
-            page = chromium.new_page(viewport={"width": 1920, "height": 1080})
-            octets = [0]
-            sockets = page.context.new_cdp_session(page)
-            sockets.send("Network.enable")
+        def heard(event: dict) -> None:
+            response = event["response"]  # a binary message comes as base64
+            octets[0] += len(response["payloadData"]) * (3 if response["opcode"] == 2 else 4) // 4
 
-            def heard(event: dict) -> None:
-                response = event["response"]  # a binary message comes as base64
-                octets[0] += len(response["payloadData"]) * (3 if response["opcode"] == 2 else 4) // 4
-
-            sockets.on("Network.webSocketFrameReceived", heard)
-            page.goto(f"{address}/lab/tree/lab.ipynb?token={token}&reset")
-            page.wait_for_function(CONNECTED, timeout=60_000)
-            page.evaluate("() => window.jupyterapp.commands.execute('notebook:run-all-cells')")
-            page.get_by_test_id("ec").first.wait_for(timeout=60_000)
-            page.evaluate(COUNT_FRAMES, 3000)  # until the page has settled
-            now = "import time; print(time.process_time(), time.perf_counter(), lab.stream.number, lab.plc.scans)"
-            before, octets[0] = [float(word) for word in page.evaluate(EVALUATE, now).split()], 0
-            frames = page.evaluate(COUNT_FRAMES, 1000 * seconds)
-            line = octets[0]
-            after = [float(word) for word in page.evaluate(EVALUATE, now).split()]
-            cpu, wall, updates, scans = (last - first for first, last in zip(before, after, strict=True))
-            page.evaluate(EVALUATE, PREPARE)
-            clicks = []
-            for _ in range(CLICKS):
-                clicks.append(page.evaluate(CLICK))
-                page.evaluate(COUNT_FRAMES, 237)
-            seen = json.loads(page.evaluate(EVALUATE, "print(seen); leave()"))
-            delays = [later - click for click, later in zip(clicks, seen, strict=True)]
-        finally:
-            chromium.close()
-            process.terminate()
-            process.wait(timeout=20)
+        sockets.on("Network.webSocketFrameReceived", heard)
+        page.goto(address)
+        page.wait_for_function(CONNECTED, timeout=60_000)
+        page.evaluate("() => window.jupyterapp.commands.execute('notebook:run-all-cells')")
+        page.get_by_test_id("ec").first.wait_for(timeout=60_000)
+        page.evaluate(COUNT_FRAMES, 3000)  # until the page has settled
+        now = "import time; print(time.process_time(), time.perf_counter(), lab.stream.number, lab.plc.scans)"
+        before, octets[0] = [float(word) for word in page.evaluate(EVALUATE, now).split()], 0
+        frames = page.evaluate(COUNT_FRAMES, 1000 * seconds)
+        line = octets[0]
+        after = [float(word) for word in page.evaluate(EVALUATE, now).split()]
+        cpu, wall, updates, scans = (last - first for first, last in zip(before, after, strict=True))
+        page.evaluate(EVALUATE, PREPARE)
+        clicks = []
+        for _ in range(CLICKS):
+            clicks.append(page.evaluate(CLICK))
+            page.evaluate(COUNT_FRAMES, 237)
+        seen = json.loads(page.evaluate(EVALUATE, "print(seen); leave()"))
+        delays = [later - click for click, later in zip(clicks, seen, strict=True)]
     return {
         "updates a second": updates / wall, "scans a second": scans / wall, "kernel, % of a core": 100 * cpu / wall,
         "animation frames a second": frames, "kB a second to the page": line / 1000 / seconds,
@@ -173,14 +104,7 @@ def main() -> None:
     table = "\n".join([about, "", "| | measured | wanted |", "|---|---|---|", *rows])
     print(table)
     if asked.write:
-        place = ROOT / "docs" / "performance.md"
-        text = place.read_text(encoding="utf-8")
-        block = f"<!-- lab -->\n\n{table}\n\n<!-- /lab -->"
-        if "<!-- lab -->" in text:
-            text = re.sub(r"<!-- lab -->.*<!-- /lab -->", lambda _: block, text, flags=re.DOTALL)
-        else:
-            text = f"{text.rstrip()}\n\n## The lab in a browser\n\n{block}\n"
-        place.write_text(text, encoding="utf-8")
+        pages.put(pages.PERFORMANCE, "lab", table.splitlines())
 
 
 if __name__ == "__main__":

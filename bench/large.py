@@ -9,14 +9,11 @@ The wheel is turned all the time while frames are counted. `--write` puts the fi
 import argparse
 import json
 import os
-import re
 import shutil
-import tempfile
-from pathlib import Path
 
+import pages
+from labserver import CONNECTED, COUNT_FRAMES, EVALUATE, page_of
 from programs import LARGEST
-
-from lab import CONNECTED, COUNT_FRAMES, EVALUATE, KERNEL, ROOT, serve
 
 STEPS = 400
 SHOWN_SINCE = """([name, began]) => new Promise((done) => {
@@ -57,55 +54,42 @@ def chain() -> str:
 
 def measure(browser: str, seconds: float, panel: str, text: str) -> dict[str, float]:
     """All figures of one panel of a lab with one program."""
-    from playwright.sync_api import sync_playwright
-
     code = f"from ecsim_widgets import Lab\nimport time\nbegan = time.time()\nbusy = time.process_time()\nlab = Lab('EC20', {text!r})\nbusy = time.process_time() - busy\nmade = time.time()\nlab"
-    cell = {"cell_type": "code", "execution_count": None, "id": "lab", "metadata": {}, "outputs": [], "source": code}
-    with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryDirectory() as home, sync_playwright() as playwright:
-        book = {"cells": [cell], "metadata": {"kernelspec": KERNEL}, "nbformat": 4, "nbformat_minor": 5}
-        (Path(folder) / "lab.ipynb").write_text(json.dumps(book), encoding="utf-8")
-        process, address, token = serve(Path(folder), Path(home))
-        chromium = playwright.chromium.launch(executable_path=browser, args=("--headless=new", "--no-sandbox", "--disable-dev-shm-usage"))
-        try:
-            page = chromium.new_page(viewport={"width": 1920, "height": 1080})
-            page.goto(f"{address}/lab/tree/lab.ipynb?token={token}&reset")
-            page.wait_for_function(CONNECTED, timeout=60_000)
-            page.evaluate(EVALUATE, "import ecsim_widgets")
-            page.evaluate("() => { window.jupyterapp.commands.execute('notebook:run-all-cells'); }")
-            page.evaluate(SHOWN_SINCE, [panel, 0])
-            now = page.evaluate("() => Date.now()")
-            began, made, busy = json.loads(page.evaluate(EVALUATE, "print([1000 * began, 1000 * made, busy])"))
-            page.evaluate(COUNT_FRAMES, 3000)  # until the page has settled
-            body = page.locator(".ladder-scroll" if panel == "ladder" else ".chart-scroll")
-            body.scroll_into_view_if_needed()
-            box = body.bounding_box()
-            page.mouse.move(box["x"] + box["width"] / 2, box["y"] + min(box["height"], 600) / 2)
-            usage = "print(time.process_time(), time.perf_counter(), lab.stream.number)"
-            timing = page.context.new_cdp_session(page)
-            timing.send("Performance.enable", {"timeDomain": "threadTicks"})
+    with page_of(code, browser) as (page, address):
+        page.goto(address)
+        page.wait_for_function(CONNECTED, timeout=60_000)
+        page.evaluate(EVALUATE, "import ecsim_widgets")
+        page.evaluate("() => { window.jupyterapp.commands.execute('notebook:run-all-cells'); }")
+        page.evaluate(SHOWN_SINCE, [panel, 0])
+        now = page.evaluate("() => Date.now()")
+        began, made, busy = json.loads(page.evaluate(EVALUATE, "print([1000 * began, 1000 * made, busy])"))
+        page.evaluate(COUNT_FRAMES, 3000)  # until the page has settled
+        body = page.locator(".ladder-scroll" if panel == "ladder" else ".chart-scroll")
+        body.scroll_into_view_if_needed()
+        box = body.bounding_box()
+        page.mouse.move(box["x"] + box["width"] / 2, box["y"] + min(box["height"], 600) / 2)
+        usage = "print(time.process_time(), time.perf_counter(), lab.stream.number)"
+        timing = page.context.new_cdp_session(page)
+        timing.send("Performance.enable", {"timeDomain": "threadTicks"})
 
-            def thread() -> float:
-                """Seconds of processor that the page's own thread has had."""
-                return {each["name"]: each["value"] for each in timing.send("Performance.getMetrics")["metrics"]}["TaskDuration"]
+        def thread() -> float:
+            """Seconds of processor that the page's own thread has had."""
+            return {each["name"]: each["value"] for each in timing.send("Performance.getMetrics")["metrics"]}["TaskDuration"]
 
-            resting = page.evaluate(COUNT_FRAMES, 1000 * seconds)
-            before = [float(word) for word in page.evaluate(EVALUATE, usage).split()]
-            page.evaluate(f"() => {{ window.frames_ = ({COUNT_FRAMES})({1000 * seconds}); }}")
-            first, started = thread(), page.evaluate("() => performance.now()")
-            turns, blank = round(seconds * 20), 0
-            for turn in range(turns):
-                page.mouse.wheel(0, 120 if turn < turns / 2 else -120)
-                blank += page.evaluate(BLANK, panel)
-                page.evaluate(COUNT_FRAMES, 20)
-            scrolling = page.evaluate("() => window.frames_")
-            share = (thread() - first) / (page.evaluate("() => performance.now()") - started) * 1000
-            after = [float(word) for word in page.evaluate(EVALUATE, usage).split()]
-            cpu, wall, updates = (last - first for first, last in zip(before, after, strict=True))
-            nodes, heap = page.evaluate(DRAWN)
-        finally:
-            chromium.close()
-            process.terminate()
-            process.wait(timeout=20)
+        resting = page.evaluate(COUNT_FRAMES, 1000 * seconds)
+        before = [float(word) for word in page.evaluate(EVALUATE, usage).split()]
+        page.evaluate(f"() => {{ window.frames_ = ({COUNT_FRAMES})({1000 * seconds}); }}")
+        first, started = thread(), page.evaluate("() => performance.now()")
+        turns, blank = round(seconds * 20), 0
+        for turn in range(turns):
+            page.mouse.wheel(0, 120 if turn < turns / 2 else -120)
+            blank += page.evaluate(BLANK, panel)
+            page.evaluate(COUNT_FRAMES, 20)
+        scrolling = page.evaluate("() => window.frames_")
+        share = (thread() - first) / (page.evaluate("() => performance.now()") - started) * 1000
+        after = [float(word) for word in page.evaluate(EVALUATE, usage).split()]
+        cpu, wall, updates = (last - first for first, last in zip(before, after, strict=True))
+        nodes, heap = page.evaluate(DRAWN)
     return {
         "Lab(...), s": (made - began) / 1000,
         "Lab(...), s of processor": busy,
@@ -137,14 +121,7 @@ def main() -> None:
     table = "\n".join([about, "", f"| | 12,000 steps, 3,000 networks | a chart of {STEPS} steps | wanted |", "|---|---|---|---|", *rows])
     print(table)
     if asked.write:
-        place = ROOT / "docs" / "performance.md"
-        text = place.read_text(encoding="utf-8")
-        block = f"<!-- large -->\n\n{table}\n\n<!-- /large -->"
-        if "<!-- large -->" in text:
-            text = re.sub(r"<!-- large -->.*<!-- /large -->", lambda _: block, text, flags=re.DOTALL)
-        else:
-            text = f"{text.rstrip()}\n\n## Large programs in a browser\n\n{block}\n"
-        place.write_text(text, encoding="utf-8")
+        pages.put(pages.PERFORMANCE, "large", table.splitlines())
 
 
 if __name__ == "__main__":

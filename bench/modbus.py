@@ -11,12 +11,11 @@ import statistics
 import subprocess
 import sys
 import time
-from pathlib import Path
+
+import pages
 
 import ecsim
 
-PAGE = Path(__file__).resolve().parent.parent / "docs" / "performance.md"
-BEGIN, END = "<!-- modbus -->", "<!-- /modbus -->"
 SCAN_S = 0.01
 READ = bytes.fromhex("0001 0000 0006 01 03 0000 000A")  # ten registers
 PROGRAM = "LD SM0\nINC D0\n" + "".join(f"LD M{n}\nOR M{n + 1}\nOUT M{n + 2}\n" for n in range(1000))
@@ -104,11 +103,7 @@ def main():
         lines.append(f"| {title} | {' | '.join(cells)} | {min(late):.2f} ({statistics.median(late):.2f}) | 2 |")
         print(lines[-1], flush=True)
     if options.write:
-        page = PAGE.read_text(encoding="utf-8")
-        if BEGIN not in page:
-            page = page.rstrip("\n") + f"\n\n## Asked over Modbus\n\n{BEGIN}\n{END}\n"
-        before, _, rest = page.partition(BEGIN)
-        PAGE.write_text("\n".join([before + BEGIN, "", *lines, "", END + rest.partition(END)[2]]), encoding="utf-8")
+        pages.put(pages.PERFORMANCE, "modbus", lines)
 
 
 if __name__ == "__main__":

@@ -5,15 +5,12 @@ python bench/rules.py [NAME ...] [--workers N] [--write]     --write fills the t
 
 import argparse
 import os
-import re
 import time
-from pathlib import Path
+
+import pages
 
 from ecsim.grading import exercise_names, find_exercise
 from ecsim.grading.mutation import GOAL, mutate
-
-PAGE = Path(__file__).resolve().parent.parent / "docs" / "grading.md"
-BEGIN, END = "<!-- written by bench/rules.py: begin -->", "<!-- end -->"
 
 
 def measured(name, workers):
@@ -36,7 +33,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*", help="exercises; all of them unless named")
     parser.add_argument("--workers", type=int, default=os.cpu_count())
-    parser.add_argument("--write", action="store_true", help=f"write the table into {PAGE.name}")
+    parser.add_argument("--write", action="store_true", help=f"write the table into {pages.GRADING.name}")
     options = parser.parse_args()
     names = options.names or [name for name in exercise_names() if "/" not in name]  # a second task has the rules of the first
     rows = [measured(name, options.workers) for name in names]
@@ -46,8 +43,7 @@ def main():
     )
     print(table)
     if options.write:
-        text = PAGE.read_text(encoding="utf-8")
-        PAGE.write_text(re.sub(rf"{BEGIN}.*?{END}", f"{BEGIN}\n\n{table}\n\n{END}", text, flags=re.DOTALL), encoding="utf-8")
+        pages.put(pages.GRADING, "rules", table.splitlines())
     return 0 if all(share >= GOAL for share, _ in rows) else 1
 
 

@@ -27,6 +27,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import pages
 import peers
 from peers import PEERS, Contender, TupleLoop, timed
 from programs import LARGEST, WORKLOADS, Workload, in_fx, x
@@ -35,8 +36,6 @@ from prototype import Prototype
 import ecsim
 
 ROOT = Path(__file__).resolve().parent.parent
-PAGE = ROOT / "docs" / "performance.md"
-BEGIN, END = "<!-- written by bench/speed.py: begin -->", "<!-- end -->"
 TURN_NS = 30_000_000
 IDLE = Workload("IDLE", "LD SM0\nOUT M0", inputs_on=0.0)
 LARGEST_STEPS = 12_000
@@ -266,16 +265,6 @@ def machine() -> str:
     return f"{model}, {platform.system()}, {platform.python_implementation()} {platform.python_version()} ({platform.python_compiler()});"
 
 
-def write(lines: list[str]) -> None:
-    """Replace what stands between the markers of docs/performance.md."""
-    page = PAGE.read_text(encoding="utf-8")
-    before, _, rest = page.partition(BEGIN)
-    _, found, after = rest.partition(END)
-    if not found:
-        raise SystemExit(f"{PAGE.relative_to(ROOT)} has no line pair `{BEGIN}` and `{END}`")
-    PAGE.write_text("\n".join([before + BEGIN, "", *lines, "", END + after]), encoding="utf-8")
-
-
 # ---- the conveyor ------------------------------------------------------------------------------------------------------
 
 
@@ -353,7 +342,7 @@ def main() -> None:
     ]
     print("\n".join(lines))
     if chosen.write:
-        write(lines)
+        pages.put(pages.PERFORMANCE, "speed", lines)
 
 
 if __name__ == "__main__":

@@ -1,16 +1,15 @@
 """A real JupyterLab and a real Chromium on it, each run with a home of its own."""
 
-import os
-import secrets
+import importlib.util
 import shutil
-import socket
-import subprocess
-import sys
-import threading
 from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+
+_spec = importlib.util.spec_from_file_location("labserver", Path(__file__).parents[2] / "bench" / "labserver.py")
+labserver = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(labserver)
 
 FLAGS = (
     "--headless=new",
@@ -25,29 +24,7 @@ FLAGS = (
     "--disable-renderer-backgrounding",
     "--disable-backgrounding-occluded-windows",
 )
-CONNECTED = """() => {
-  const context = window.jupyterapp?.shell.currentWidget?.sessionContext;
-  return Boolean(context?.isReady && context.session?.kernel?.connectionStatus === 'connected');
-}"""
 IDLE = "() => window.jupyterapp.shell.currentWidget.sessionContext.session.kernel.status === 'idle'"
-EVALUATE = """async (code) => {
-  const kernel = window.jupyterapp.shell.currentWidget.sessionContext.session.kernel;
-  const future = kernel.requestExecute({ code, store_history: false });
-  let text = '';
-  future.onIOPub = (message) => {
-    if (message.header.msg_type === 'stream') text += message.content.text;
-    if (message.header.msg_type === 'error') text += message.content.evalue;
-  };
-  await future.done;
-  return text.trim();
-}"""
-
-
-def free_port():
-    """A port of loopback that nobody has."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
 
 
 @dataclass
@@ -60,45 +37,11 @@ class Server:
 
 
 @pytest.fixture(scope="session")
-def server(root, tmp_path_factory):
+def server(tmp_path_factory):
     """JupyterLab on an empty folder; nothing of the person's own settings has a say in it."""
     folder, home = tmp_path_factory.mktemp("notebooks"), tmp_path_factory.mktemp("jupyter")
-    places = {
-        name: str(home / name.lower())
-        for name in (
-            "JUPYTER_CONFIG_DIR",
-            "JUPYTER_DATA_DIR",
-            "JUPYTER_RUNTIME_DIR",
-            "JUPYTERLAB_SETTINGS_DIR",
-            "JUPYTERLAB_WORKSPACES_DIR",
-            "IPYTHONDIR",
-        )
-    }
-    port, token = free_port(), secrets.token_hex(16)
-    command = [sys.executable, "-m", "jupyterlab", "--no-browser", "--expose-app-in-browser", "--ServerApp.ip=127.0.0.1"]
-    command += ["--JupyterNotebookApp.expose_app_in_browser=True"]  # the same server has Notebook 7, under /notebooks
-    command += [
-        f"--ServerApp.port={port}",
-        "--ServerApp.port_retries=0",
-        f"--IdentityProvider.token={token}",
-        f"--ServerApp.root_dir={folder}",
-    ]
-    command += ["--LanguageServerManager.autodetect=False", *(["--allow-root"] if hasattr(os, "geteuid") and os.geteuid() == 0 else [])]
-    environment = {**os.environ, **places, "JUPYTER_CONFIG_PATH": str(root)}
-    process = subprocess.Popen(
-        command, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
-    )
-    said = []
-    for line in process.stdout:
-        said.append(line)
-        if "is running at" in line:
-            break
-    else:
-        pytest.fail("JupyterLab did not start:\n" + "".join(said[-20:]))
-    threading.Thread(target=process.stdout.read, daemon=True).start()  # a full pipe would stop it
-    yield Server(f"http://127.0.0.1:{port}", token, folder)
-    process.terminate()
-    process.wait(timeout=20)
+    with labserver.server(folder, home) as (address, token):
+        yield Server(address, token, folder)
 
 
 @pytest.fixture(scope="session")
@@ -138,7 +81,7 @@ class Notebook:
 
     def kernel(self, code):
         """What the kernel prints for a piece of code."""
-        return self.page.evaluate(EVALUATE, code)
+        return self.page.evaluate(labserver.EVALUATE, code)
 
     def errors(self):
         """What cells have raised."""
@@ -168,7 +111,7 @@ def open_notebook(root, server, browser):
         page.set_default_timeout(60_000)
         pages.append(page)
         page.goto(f"{server.address}/{app}/{copy}?token={server.token}&reset")
-        page.wait_for_function(CONNECTED)
+        page.wait_for_function(labserver.CONNECTED)
         return Notebook(page)
 
     yield open_it
