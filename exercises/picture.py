@@ -61,3 +61,27 @@ class Picture:
         state |= {f"{part}:class": f"{base} on" if on(moment) else base for part, on, base in self._lit}
         state |= {f"{part}:text": text(moment) for part, text in self._texts.items()}
         return state | self._free(moment)
+
+
+def on(device: str) -> Callable[[Moment], object]:
+    """Whether the lamp of a terminal is lit."""
+    outputs = device.startswith("Y")
+    return lambda moment: (moment.outputs if outputs else moment.inputs).get(device, 0)
+
+
+def latest_incident(digits: int = 1, of: str = "") -> Callable[[Moment], str]:
+    """The last of the plant's incidents in words, its time with so many digits; `of` says what an incident's number counts, if it has one."""
+
+    def words(moment: Moment) -> str:
+        if not moment.plant.incidents:
+            return ""
+        seconds, *what = moment.plant.incidents[-1]
+        return f"{seconds:.{digits}f} s: {' '.join(map(str, [of, *what] if of else what))}"
+
+    return words
+
+
+def contacts(places: Mapping[str, float]) -> dict[str, str]:
+    """Contacts by name, 0 for an open one, whose blades lean as they are drawn, 1 for a closed one, whose blades stand upright."""
+    foot, lean = 148, 10 / 36
+    return {f"contact-{name}:transform": f"matrix(1 0 {-lean * place:.4f} 1 {lean * place * foot:.2f} 0)" for name, place in places.items()}

@@ -2,17 +2,11 @@
 
 from pathlib import Path
 
-from ..picture import Picture
+from ..picture import Picture, on
 from ..plant import Moment
 
 PITCH_MM = 10  # the screw's travel in one turn
 INPUTS, LAMPS = ("X0", "X1", "X2", "X3", "X4", "X6", "X7"), ("Y4", "Y5", "Y6")
-
-
-def on(device):
-    """The lamp of a terminal."""
-    outputs = device.startswith("Y")
-    return lambda moment: (moment.outputs if outputs else moment.inputs).get(device, 0)
 
 
 def moving(moment: Moment) -> bool:

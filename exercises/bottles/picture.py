@@ -3,7 +3,7 @@
 from math import cos, radians, sin
 from pathlib import Path
 
-from ..picture import Picture
+from ..picture import Picture, latest_incident, on
 from ..plant import Moment
 from .plant import EXIT, REJECTING, BottleMachine
 
@@ -48,20 +48,6 @@ def put(place, pushed):
     return f"translate({x:.1f} {y:.1f}) rotate({angle:.0f})"
 
 
-def latest_incident(moment: Moment) -> str:
-    """The last thing that went wrong, in words."""
-    if not moment.plant.incidents:
-        return ""
-    seconds, what = moment.plant.incidents[-1]
-    return f"{seconds:.1f} s: {what}"
-
-
-def on(device):
-    """The lamp of a terminal."""
-    outputs = device.startswith("Y")
-    return lambda moment: (moment.outputs if outputs else moment.inputs).get(device, 0)
-
-
 def turns(moment: Moment) -> float:
     """How far the table has turned, in degrees."""
     return TURN * (moment.plant.turned + moment.plant.table)
@@ -90,7 +76,7 @@ PICTURE = Picture(
     texts={
         "passed": lambda moment: f"{moment.plant.passed} passed",
         "rejected": lambda moment: f"{moment.plant.rejected} rejected",
-        "amiss-text": latest_incident,
+        "amiss-text": latest_incident(),
     },
     free=bottles,
 )

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from ..picture import Picture
+from ..picture import Picture, latest_incident, on
 from ..plant import Moment
 from .plant import LENGTHS, CarPark
 
@@ -31,20 +31,6 @@ def bays(moment: Moment) -> dict[str, str]:
     return {f"parked-{number}:transform": "translate(0 0)" if number < moment.plant.inside else AWAY for number in range(BAYS)}
 
 
-def on(device):
-    """The lamp of a terminal."""
-    outputs = device.startswith("Y")
-    return lambda moment: (moment.outputs if outputs else moment.inputs).get(device, 0)
-
-
-def latest_incident(moment: Moment) -> str:
-    """The last thing that went wrong, in words."""
-    if not moment.plant.incidents:
-        return ""
-    seconds, what = moment.plant.incidents[-1]
-    return f"{seconds:.1f} s: {what}"
-
-
 PICTURE = Picture(
     Path(__file__).with_name("picture.svg"),
     places={},
@@ -57,6 +43,6 @@ PICTURE = Picture(
         "lamp": on("Y1"),
         "amiss": lambda moment: moment.plant.incidents,
     },
-    texts={"inside": lambda moment: str(moment.plant.inside), "amiss-text": latest_incident},
+    texts={"inside": lambda moment: str(moment.plant.inside), "amiss-text": latest_incident()},
     free=lambda moment: lane(moment) | bays(moment),
 )

@@ -3,7 +3,7 @@
 from math import atan2, cos, degrees
 from pathlib import Path
 
-from ..picture import Picture
+from ..picture import Picture, latest_incident, on
 from ..plant import Moment
 from .plant import PALLET, Conveyor
 
@@ -29,20 +29,6 @@ def pallets(moment: Moment) -> dict[str, str]:
         state[f"pallet-{number % SLOTS}:transform"] = f"translate({x:.1f} {BELT_TOP - rear_up:.1f}){lean}"
         state[f"pallet-{number % SLOTS}-number:text"] = str(number)
     return state
-
-
-def latest_incident(moment: Moment) -> str:
-    """The last thing that went wrong, in words."""
-    if not moment.plant.incidents:
-        return ""
-    seconds, pallet, what = moment.plant.incidents[-1]
-    return f"{seconds:.2f} s: pallet {pallet} {what}"
-
-
-def on(device):
-    """The lamp of a terminal."""
-    outputs = device.startswith("Y")
-    return lambda moment: (moment.outputs if outputs else moment.inputs).get(device, 0)
 
 
 # A tag shows what the PLC has at its terminal, a switch on the machine what the machine does to it.
@@ -74,7 +60,7 @@ PICTURE = Picture(
         "amiss": lambda moment: moment.plant.incidents,
     },
     texts={
-        "amiss-text": latest_incident,
+        "amiss-text": latest_incident(digits=2, of="pallet"),
         "delivered": lambda moment: f"{moment.plant.delivered} delivered",
     },
     free=pallets,

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from ..picture import Picture
+from ..picture import Picture, latest_incident, on
 from ..plant import Moment
 from .plant import CROSS_S
 
@@ -10,12 +10,6 @@ LAMPS = ("Y0", "Y1", "Y2", "Y3", "Y4", "Y5")
 CARS, WALKERS = 16, 4  # as many are drawn
 PX_PER_S, LINE_X, CAR_GAP = 70, 300, 74
 KERB_Y, ACROSS = 250, 170  # a walker's way over the road
-
-
-def on(device):
-    """The lamp of a terminal."""
-    outputs = device.startswith("Y")
-    return lambda moment: (moment.outputs if outputs else moment.inputs).get(device, 0)
 
 
 def cars(moment: Moment) -> dict[str, str]:
@@ -41,14 +35,6 @@ def walkers(moment: Moment) -> dict[str, str]:
     return state
 
 
-def latest_incident(moment: Moment) -> str:
-    """The last thing that went wrong, in words."""
-    if not moment.plant.incidents:
-        return ""
-    seconds, what = moment.plant.incidents[-1]
-    return f"{seconds:.1f} s: {what}"
-
-
 PICTURE = Picture(
     Path(__file__).with_name("picture.svg"),
     places={},
@@ -60,7 +46,7 @@ PICTURE = Picture(
     },
     texts={
         "passed": lambda moment: f"{moment.plant.passed} cars, {moment.plant.crossed} walkers",
-        "amiss-text": latest_incident,
+        "amiss-text": latest_incident(),
     },
     free=lambda moment: cars(moment) | walkers(moment),
 )

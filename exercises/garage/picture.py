@@ -2,18 +2,12 @@
 
 from pathlib import Path
 
-from ..picture import Picture
+from ..picture import Picture, latest_incident, on
 from ..plant import Moment
 from .plant import PASS_S
 
 WAY = 420  # px that a car drives while it is under the door
 HOUSE_X = 250  # where a waiting car stands
-
-
-def on(device):
-    """The lamp of a terminal."""
-    outputs = device.startswith("Y")
-    return lambda moment: (moment.outputs if outputs else moment.inputs).get(device, 0)
 
 
 def car(moment: Moment) -> dict[str, str]:
@@ -23,14 +17,6 @@ def car(moment: Moment) -> dict[str, str]:
     if driven < 1:
         return {"car:transform": f"translate({WAY * driven:.1f} 0)", "car:class": "car"}
     return {"car:transform": "translate(0 0)", "car:class": "car" if plant.waiting else "car away"}
-
-
-def latest_incident(moment: Moment) -> str:
-    """The last thing that went wrong, in words."""
-    if not moment.plant.incidents:
-        return ""
-    seconds, what = moment.plant.incidents[-1]
-    return f"{seconds:.1f} s: {what}"
 
 
 PICTURE = Picture(
@@ -51,7 +37,7 @@ PICTURE = Picture(
     },
     texts={
         "through": lambda moment: f"{moment.plant.through} through, {moment.plant.waiting} waiting",
-        "amiss-text": latest_incident,
+        "amiss-text": latest_incident(),
     },
     free=car,
 )

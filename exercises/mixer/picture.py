@@ -3,7 +3,7 @@
 from math import cos, tau
 from pathlib import Path
 
-from ..picture import Picture
+from ..picture import Picture, latest_incident, on
 from ..plant import Moment
 from .plant import FULL, Mixer
 
@@ -22,24 +22,10 @@ def level(moment: Moment) -> float:
     return (BOTTOM_PX + (weight - BOTTOM_KG) * PX_PER_KG) / HEIGHT
 
 
-def latest_incident(moment: Moment) -> str:
-    """The last thing that went wrong, in words."""
-    if not moment.plant.incidents:
-        return ""
-    seconds, batch, what = moment.plant.incidents[-1]
-    return f"{seconds:.1f} s: batch {batch} {what}"
-
-
 def blades(moment: Moment) -> dict[str, str]:
     """The blades as they are seen from the side: narrower by the cosine of their angle."""
     width = max(0.12, abs(cos(moment.plant.turns * tau)))
     return {"blades:transform": f"translate({CENTRE * (1 - width):.1f} 0) scale({width:.3f} 1)"}
-
-
-def on(device):
-    """The lamp of a terminal."""
-    outputs = device.startswith("Y")
-    return lambda moment: (moment.outputs if outputs else moment.inputs).get(device, 0)
 
 
 def opened(number):
@@ -70,7 +56,7 @@ PICTURE = Picture(
         "weight": lambda moment: f"{int(moment.plant.weight + 1e-6):,}",
         "product": lambda moment: PRODUCTS.get(moment.inputs.get("D2", 0), "not chosen"),
         "finished": lambda moment: str(moment.plant.finished),
-        "amiss-text": latest_incident,
+        "amiss-text": latest_incident(of="batch"),
     },
     free=blades,
 )

@@ -2,25 +2,8 @@
 
 from pathlib import Path
 
-from ..picture import Picture
+from ..picture import Picture, contacts, latest_incident, on
 from ..plant import Moment
-
-FOOT, LEAN = 148, 10 / 36  # where the contacts turn, and how far they lean
-
-
-def on(device):
-    """The lamp of a terminal."""
-    outputs = device.startswith("Y")
-    return lambda moment: (moment.outputs if outputs else moment.inputs).get(device, 0)
-
-
-def blades(moment: Moment) -> dict[str, str]:
-    """The contacts lean over when they are open, and stand upright when they are closed."""
-    state = {}
-    for name, place in (("forward", moment.plant.forward), ("reverse", moment.plant.reverse)):
-        lean = LEAN * place
-        state[f"contact-{name}:transform"] = f"matrix(1 0 {-lean:.4f} 1 {lean * FOOT:.2f} 0)"
-    return state
 
 
 def speed(moment: Moment) -> str:
@@ -29,14 +12,6 @@ def speed(moment: Moment) -> str:
     if not at:
         return "stands still"
     return f"{'forward' if at > 0 else 'reverse'}, {abs(at):.0%} of its speed"
-
-
-def latest_incident(moment: Moment) -> str:
-    """The last thing that went wrong, in words."""
-    if not moment.plant.incidents:
-        return ""
-    seconds, what = moment.plant.incidents[-1]
-    return f"{seconds:.2f} s: {what}"
 
 
 PICTURE = Picture(
@@ -52,6 +27,6 @@ PICTURE = Picture(
         "go-reverse": lambda moment: moment.plant.speed < 0,
         "amiss": lambda moment: moment.plant.incidents,
     },
-    texts={"speed": speed, "amiss-text": latest_incident},
-    free=blades,
+    texts={"speed": speed, "amiss-text": latest_incident(digits=2)},
+    free=lambda moment: contacts({"forward": moment.plant.forward, "reverse": moment.plant.reverse}),
 )

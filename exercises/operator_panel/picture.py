@@ -4,7 +4,7 @@ from pathlib import Path
 
 from ecsim.instructions.conversion import SEGMENTS
 
-from ..picture import Picture
+from ..picture import Picture, on
 from ..plant import Moment
 from .plant import ARROWS, COLUMNS, DIGITS, HEXADECIMAL, PARTS, ROWS
 
@@ -19,11 +19,6 @@ KEYS = {
     **{f"arrow-{way}": f"arrows {way}" for way in ARROWS},
 }
 LINES, WIDTH = 4, 34  # of the paper that is seen
-
-
-def on(device):
-    """The lamp of a terminal."""
-    return lambda moment: (moment.outputs if device.startswith("Y") else moment.inputs).get(device, 0)
 
 
 def pressed(key):

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from ..picture import Picture
+from ..picture import Picture, latest_incident, on
 from ..plant import Moment
 
 HOTTEST = 320.0  # the end of the scale
@@ -11,23 +11,9 @@ CLOSES = 24.0  # degrees from an open contact to a closed one
 DEVICES = ("X0", "X1", "X2", "Y0", "Y1", "Y2", "Y3")
 
 
-def on(device):
-    """The lamp of a terminal."""
-    outputs = device.startswith("Y")
-    return lambda moment: (moment.outputs if outputs else moment.inputs).get(device, 0)
-
-
 def relay(moment: Moment) -> bool:
     """Whether the relay is closed; it need not open."""
     return bool(moment.outputs.get("Y0") or "relay welded" in moment.plant.faults)
-
-
-def latest_incident(moment: Moment) -> str:
-    """The last thing that went wrong, in words."""
-    if not moment.plant.incidents:
-        return ""
-    seconds, what = moment.plant.incidents[-1]
-    return f"{seconds:.1f} s: {what}"
 
 
 def reading(moment: Moment) -> str:
@@ -52,5 +38,5 @@ PICTURE = Picture(
         "door-switch": on("X1"),
         "amiss": lambda moment: moment.plant.incidents,
     },
-    texts={"reading": reading, "amiss-text": latest_incident},
+    texts={"reading": reading, "amiss-text": latest_incident()},
 )

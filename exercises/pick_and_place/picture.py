@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from ..picture import Picture
+from ..picture import Picture, latest_incident, on
 from ..plant import Moment
 from .plant import Arm
 
@@ -16,20 +16,6 @@ def parts(moment: Moment) -> dict[str, str]:
     plant: Arm = moment.plant
     shown = {"nest": plant.nest, "place": plant.occupied, "held": plant.holds}
     return {f"part-{where}:transform": "translate(0 0)" if there else AWAY for where, there in shown.items()}
-
-
-def on(device):
-    """The lamp of a terminal."""
-    outputs = device.startswith("Y")
-    return lambda moment: (moment.outputs if outputs else moment.inputs).get(device, 0)
-
-
-def latest_incident(moment: Moment) -> str:
-    """The last thing that went wrong, in words."""
-    if not moment.plant.incidents:
-        return ""
-    seconds, what = moment.plant.incidents[-1]
-    return f"{seconds:.2f} s: {what}"
 
 
 PICTURE = Picture(
@@ -53,7 +39,7 @@ PICTURE = Picture(
     texts={
         "placed": lambda moment: str(moment.plant.placed),
         "lost": lambda moment: str(moment.plant.lost),
-        "amiss-text": latest_incident,
+        "amiss-text": latest_incident(digits=2),
     },
     free=parts,
 )

@@ -2,34 +2,9 @@
 
 from pathlib import Path
 
-from ..picture import Picture
-from ..plant import Moment
+from ..picture import Picture, contacts, latest_incident, on
 
-FOOT, LEAN = 148, 10 / 36  # where the contacts turn, and how far they lean
 CONTACTORS = ("line", "star", "delta")
-
-
-def on(device):
-    """The lamp of a terminal."""
-    outputs = device.startswith("Y")
-    return lambda moment: (moment.outputs if outputs else moment.inputs).get(device, 0)
-
-
-def blades(moment: Moment) -> dict[str, str]:
-    """The contacts lean over when they are open, and stand upright when they are closed."""
-    state = {}
-    for name, place in zip(CONTACTORS, moment.plant.places, strict=True):
-        lean = LEAN * place
-        state[f"contact-{name}:transform"] = f"matrix(1 0 {-lean:.4f} 1 {lean * FOOT:.2f} 0)"
-    return state
-
-
-def latest_incident(moment: Moment) -> str:
-    """The last thing that went wrong, in words."""
-    if not moment.plant.incidents:
-        return ""
-    seconds, what = moment.plant.incidents[-1]
-    return f"{seconds:.2f} s: {what}"
 
 
 PICTURE = Picture(
@@ -42,6 +17,6 @@ PICTURE = Picture(
         "motor": lambda moment: moment.plant.speed,
         "amiss": lambda moment: moment.plant.incidents,
     },
-    texts={"speed": lambda moment: f"{moment.plant.speed:.0%}", "amiss-text": latest_incident},
-    free=blades,
+    texts={"speed": lambda moment: f"{moment.plant.speed:.0%}", "amiss-text": latest_incident(digits=2)},
+    free=lambda moment: contacts(dict(zip(CONTACTORS, moment.plant.places, strict=True))),
 )

@@ -2,18 +2,11 @@
 
 from pathlib import Path
 
-from ..picture import Picture
-from ..plant import Moment
+from ..picture import Picture, latest_incident, on
 from .plant import FULL
 
 PUMPS = ("A", "B")
 FLOATS = {"X1": "Bottom", "X2": "Low", "X3": "High"}
-
-
-def on(device):
-    """The lamp of a terminal."""
-    outputs = device.startswith("Y")
-    return lambda moment: (moment.outputs if outputs else moment.inputs).get(device, 0)
 
 
 def brings(number):
@@ -24,14 +17,6 @@ def brings(number):
 def turned(number):
     """How far the wheel of a pump has turned, in degrees."""
     return lambda moment: 360 * moment.plant.turns[number]
-
-
-def latest_incident(moment: Moment) -> str:
-    """The last thing that went wrong, in words."""
-    if not moment.plant.incidents:
-        return ""
-    seconds, what = moment.plant.incidents[-1]
-    return f"{seconds:.1f} s: {what}"
 
 
 PICTURE = Picture(
@@ -52,6 +37,6 @@ PICTURE = Picture(
     texts={
         "water": lambda moment: f"{moment.plant.water:.0f}",
         "drawn": lambda moment: f"{moment.plant.drawn:.1f} l/s",
-        "amiss-text": latest_incident,
+        "amiss-text": latest_incident(),
     },
 )

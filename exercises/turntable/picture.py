@@ -2,27 +2,14 @@
 
 from pathlib import Path
 
-from ..picture import Picture
+from ..picture import Picture, latest_incident, on
 from .plant import CAMS, PLACES, CamShaft, Turntable
-
-
-def on(device):
-    """The lamp of a terminal."""
-    return lambda moment: (moment.outputs if device.startswith("Y") else moment.inputs).get(device, 0)
 
 
 def stands(moment) -> str:
     """Which item stands at window 0, in words."""
     item, before = moment.plant.item_at(0)
     return f"item {item} at window 0" if abs(before) < 0.1 else f"item {item} near window 0"
-
-
-def latest_incident(moment) -> str:
-    """The last thing that went wrong, in words."""
-    if not moment.plant.incidents:
-        return ""
-    seconds, what = moment.plant.incidents[-1]
-    return f"{seconds:.1f} s: {what}"
 
 
 def ran(cam):
@@ -51,7 +38,7 @@ PICTURE = Picture(
     texts={
         "stands": stands,
         "speed": lambda moment: f"{moment.plant.speed:.2f} places a second".replace("-", "−"),
-        "amiss-text": latest_incident,
+        "amiss-text": latest_incident(),
     },
 )
 
