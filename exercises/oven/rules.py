@@ -23,11 +23,6 @@ def begin(goal):
     return [Do({"Goal": round(10 * goal)}, at=0.0), Do({"On": 1}, at=1.0)]
 
 
-def fault(name, on=True, **when):
-    """A fault of the oven, switched in or out."""
-    return Do(act=lambda plc, plant: plant.fail(name, on), **when)
-
-
 def press(**when):
     """The button Reset, pressed for a moment."""
     return Do({"Reset": 1}, **when, hold=0.5)
@@ -63,8 +58,8 @@ SCENARIOS = (
         plant=lambda chosen: Oven(warm=chosen.goal - 30),
         script=lambda chosen: [
             *begin(chosen.goal),
-            fault("door open", at=400.0),
-            fault("door open", on=False, at=400.0 + chosen.open_s),
+            Do(fail="door open", at=400.0),
+            Do(mend="door open", at=400.0 + chosen.open_s),
         ],
         draws=1,
     ),
@@ -77,10 +72,10 @@ SCENARIOS = (
             *begin(180.0),
             Do({"On": 0}, at=1.0 + chosen.off),
             Do({"On": 1}, at=60.0),
-            fault("door open", at=75.0),
+            Do(fail="door open", at=75.0),
             Do({"On": 0}, at=80.0),
             Do({"On": 1}, at=90.0),
-            fault("door open", on=False, at=100.0),
+            Do(mend="door open", at=100.0),
         ],
         draws=1,
     ),
@@ -92,9 +87,9 @@ SCENARIOS = (
         plant=lambda chosen: Oven(warm=chosen.goal),
         script=lambda chosen: [
             *begin(chosen.goal),
-            fault("relay welded", at=chosen.welds),
+            Do(fail="relay welded", at=chosen.welds),
             press(when="Temp > 2530", after=2.0),
-            fault("relay welded", on=False, when="Temp < 2400"),
+            Do(mend="relay welded", when="Temp < 2400"),
             Do({"On": 0}, after=3.0),
             Do({"On": 1}, after=3.0),
             press(after=3.0),
@@ -109,9 +104,9 @@ SCENARIOS = (
         plant=lambda chosen: Oven(warm=100.0),
         script=lambda chosen: [
             *begin(180.0),
-            fault("sensor broken", at=chosen.breaks),
+            Do(fail="sensor broken", at=chosen.breaks),
             press(at=50.0),
-            fault("sensor broken", on=False, at=60.0),
+            Do(mend="sensor broken", at=60.0),
             press(at=75.0),
         ],
         draws=1,
@@ -123,7 +118,7 @@ SCENARIOS = (
         choices={"still": Between(140.0, 180.0, usual=150.0, digits=1)},
         plant=lambda chosen: Oven(room=chosen.still),
         script=lambda chosen: [
-            fault("element broken", at=0.0),
+            Do(fail="element broken", at=0.0),
             *begin(chosen.still),
             *[Do({"Goal": round(10 * chosen.still) + more}, at=5.0 * place) for place, more in enumerate((20, 21, -20, -21, 0), 1)],
         ],

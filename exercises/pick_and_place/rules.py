@@ -20,11 +20,6 @@ def arm(chosen):
     return Arm(tuple(chosen.pauses), chosen.clears)
 
 
-def fault(name, on=True, **when):
-    """A fault of the machine, switched in or out."""
-    return Do(fail=name, **when) if on else Do(mend=name, **when)
-
-
 SCENARIOS = (
     Scenario(
         "parts",
@@ -64,8 +59,8 @@ SCENARIOS = (
         plant=arm,
         script=lambda chosen: [
             READY,
-            fault("slips", when="placed >= 1"),
-            fault("slips", on=False, when="Grip and AtLeft and IsDown", after=chosen.seconds),
+            Do(fail="slips", when="placed >= 1"),
+            Do(mend="slips", when="Grip and AtLeft and IsDown", after=chosen.seconds),
         ],
         until="placed >= 2 and AtLeft",
         draws=2,

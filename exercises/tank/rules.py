@@ -17,11 +17,6 @@ OKS = {"A": "OkA", "B": "OkB"}
 OTHER = {"A": "B", "B": "A"}
 
 
-def fault(name, on=True, **when):
-    """A fault of the machine, switched in or out."""
-    return Do(fail=name, **when) if on else Do(mend=name, **when)
-
-
 def drawing(chosen):
     """What the consumers draw, in stretches of 20 s."""
     return tuple((20.0, flow) for flow in chosen.flows)
@@ -54,11 +49,11 @@ SCENARIOS = (
         plant=lambda chosen: Tank(160.0, ((100.0, 4.0), (100.0, 5.0))),
         script=lambda chosen: [
             READY,
-            fault(f"{chosen.pump} trips", when=f"Pump{chosen.pump}", after=chosen.after),
-            fault(f"{chosen.pump} trips", on=False, after=chosen.mended),
+            Do(fail=f"{chosen.pump} trips", when=f"Pump{chosen.pump}", after=chosen.after),
+            Do(mend=f"{chosen.pump} trips", after=chosen.mended),
             Do(when=f"not {RUNS}"),
-            fault(f"{OTHER[chosen.pump]} trips", when=f"Pump{OTHER[chosen.pump]}", after=chosen.after),
-            fault(f"{OTHER[chosen.pump]} trips", on=False, after=chosen.mended),
+            Do(fail=f"{OTHER[chosen.pump]} trips", when=f"Pump{OTHER[chosen.pump]}", after=chosen.after),
+            Do(mend=f"{OTHER[chosen.pump]} trips", after=chosen.mended),
         ],
         draws=2,
     ),
@@ -68,7 +63,7 @@ SCENARIOS = (
         seconds=100,
         choices={"pump": OneOf("A", "B")},
         plant=lambda chosen: Tank(70.0, ((4.0, 8.0), (60.0, 2.0))),
-        script=lambda chosen: [fault(f"{chosen.pump} trips", at=0.0), READY],
+        script=lambda chosen: [Do(fail=f"{chosen.pump} trips", at=0.0), READY],
         draws=0,
     ),
     Scenario(
@@ -76,7 +71,7 @@ SCENARIOS = (
         "The same with the other pump, at the bottom",
         seconds=80,
         plant=lambda chosen: Tank(40.0, ((60.0, 2.0),)),
-        script=[fault("B trips", at=0.0), READY],
+        script=[Do(fail="B trips", at=0.0), READY],
         draws=0,
     ),
     Scenario(
@@ -92,11 +87,11 @@ SCENARIOS = (
         plant=lambda chosen: Tank(170.0, ((50.0, 4.0), (50.0, 6.0))),
         script=lambda chosen: [
             READY,
-            fault("leak", at=getattr(chosen, "from")),
+            Do(fail="leak", at=getattr(chosen, "from")),
             Do({"Reset": 1}, when="not Low", after=chosen.early, hold=0.5),
             Do({"Auto": 0}, when="Alarm", after=2.0),
             Do({"Auto": 1}, after=3.0),
-            fault("leak", on=False, after=chosen.reset),
+            Do(mend="leak", after=chosen.reset),
             Do({"Reset": 1}, after=1.0, hold=chosen.pressed),
         ],
         draws=2,
@@ -107,9 +102,9 @@ SCENARIOS = (
         seconds=190,
         plant=lambda chosen: Tank(160.0, ((4.0, 3.0), (18.0, 0.0), (20.0, 5.0), (60.0, 0.0), (10.0, 9.0))),
         script=[
-            fault("A blocked", at=0.0),
+            Do(fail="A blocked", at=0.0),
             READY,
-            fault("A blocked", on=False, when="not Low", after=50.0),
+            Do(mend="A blocked", when="not Low", after=50.0),
             Do({"Reset": 1}, when="Alarm", after=5.0, hold=0.5),
         ],
         draws=0,
