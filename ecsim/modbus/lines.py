@@ -26,10 +26,10 @@ PARITIES = {"none": "N", "odd": "O", "even": "E"}
 
 
 class _Quiet(ModbusProtocol):
-    """A protocol that has nothing to do when it is connected or not."""
+    """A protocol that has nothing to do when it is connected or not, and is the one end of its connection."""
 
     def callback_new_connection(self) -> ModbusProtocol:
-        raise NotImplementedError("only a line has connections")
+        return self
 
     def callback_connected(self) -> None:
         pass

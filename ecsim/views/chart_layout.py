@@ -380,12 +380,12 @@ class ChartLayout:
     def _reach(self, goals: Iterable[Node], stop: Node | None) -> set[Node]:
         """The nodes below some nodes that are still to be placed, and `stop` where it is reached."""
         found: set[Node] = set()
-        todo = list(goals)
-        while todo:
-            node = todo.pop()
+        waiting = list(goals)
+        while waiting:
+            node = waiting.pop()
             if node in found or (node in self.placed and node is not stop):
                 continue
             found.add(node)
             if node is not stop:
-                todo += [goal for leg in node.legs for goal in leg.goals if isinstance(goal, Node) and goal.order > node.order]
+                waiting += [goal for leg in node.legs for goal in leg.goals if isinstance(goal, Node) and goal.order > node.order]
         return found

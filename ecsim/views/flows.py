@@ -188,9 +188,9 @@ def _of_step(word: Word) -> bool:
 
 def leaves(flow: Series) -> Iterator[tuple[Series, list[Word]]]:
     """Every place in a rung where outputs hang, with the condition from the bus to there."""
-    todo: list[tuple[tuple[Item, ...], Series]] = [((), flow)]
-    while todo:
-        before, series = todo.pop()
+    waiting: list[tuple[tuple[Item, ...], Series]] = [((), flow)]
+    while waiting:
+        before, series = waiting.pop()
         condition, outputs = list(before), []
         for item in series.items:
             if isinstance(item, Output):
@@ -200,7 +200,7 @@ def leaves(flow: Series) -> Iterator[tuple[Series, list[Word]]]:
                     yield Series(tuple(condition)), outputs
                     outputs = []
                 if isinstance(item, Fork):
-                    todo += [(tuple(condition), branch) for branch in reversed(item.branches)]
+                    waiting += [(tuple(condition), branch) for branch in reversed(item.branches)]
                 else:
                     condition.append(item)
         if outputs:

@@ -162,11 +162,11 @@ class Listing:
 def _steps_of(unit: Unit) -> dict[int, tuple[int, ...]]:
     """By index of an instruction the steps it belongs to."""
     found: dict[int, tuple[int, ...]] = {}
-    todo = list(unit.nodes)
-    while todo:
-        node = todo.pop()
+    waiting = list(unit.nodes)
+    while waiting:
+        node = waiting.pop()
         if isinstance(node, Region):
-            todo += node.nodes
+            waiting += node.nodes
             if node.kind == "STL":
                 found.update(dict.fromkeys(range(node.opening, node.closing), tuple(step.number for step in node.steps)))
     return found

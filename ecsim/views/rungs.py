@@ -282,9 +282,9 @@ _STRUCTURAL = {
 
 def words(flow: Series, loads: bool = True) -> Iterator[Word]:
     """The instruction list of a series; `loads` tells that it begins a block, so that a contact at its head is an LD."""
-    todo: list[tuple[Item | Series | Word, str]] = [(flow, "LD" if loads else "AND")]
-    while todo:
-        node, join = todo.pop()
+    waiting: list[tuple[Item | Series | Word, str]] = [(flow, "LD" if loads else "AND")]
+    while waiting:
+        node, join = waiting.pop()
         if isinstance(node, Word):
             yield node
         elif isinstance(node, Contact):
@@ -292,7 +292,7 @@ def words(flow: Series, loads: bool = True) -> Iterator[Word]:
         elif isinstance(node, Gate | Output):
             yield node.word
         else:
-            todo += reversed(list(_parts(node, join)))
+            waiting += reversed(list(_parts(node, join)))
 
 
 def _parts(node: Item | Series, join: str) -> Iterator[tuple[Item | Series | Word, str]]:
@@ -316,14 +316,14 @@ def _parts(node: Item | Series, join: str) -> Iterator[tuple[Item | Series | Wor
 def depth(flow: Series) -> int:
     """How deep a tree is nested; an output with something behind it counts, as its branch does in the drawing."""
     deepest = 0
-    todo: list[tuple[Item | Series | Word, int]] = [(flow, 1)]
-    while todo:
-        node, level = todo.pop()
+    waiting: list[tuple[Item | Series | Word, int]] = [(flow, 1)]
+    while waiting:
+        node, level = waiting.pop()
         deepest = max(deepest, level)
         if isinstance(node, Series):
             level += sum(isinstance(a, Output) and not isinstance(b, Output) for a, b in pairwise(node.items))
         if isinstance(node, Series | Block | Parallel | Fork):
-            todo += [(part, level + 1) for part, _ in _parts(node, "")]
+            waiting += [(part, level + 1) for part, _ in _parts(node, "")]
     return deepest
 
 
