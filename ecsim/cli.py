@@ -52,8 +52,7 @@ def _parser() -> argparse.ArgumentParser:
         description="Compile a program and list all its errors and those of its settings.",
         epilog="Ends with 0 when there are none, with 1 when there are some, with 2 when it cannot be read.",
     )
-    check.add_argument("program", type=Path, metavar="PROGRAM", help="an .il file or a project folder")
-    check.add_argument("--model", choices=list(MODELS), help="EC20 unless the project says otherwise")
+    _takes_program(check)
     check.set_defaults(act=_check)
     run = commands.add_parser(
         "run",
@@ -62,8 +61,7 @@ def _parser() -> argparse.ArgumentParser:
         epilog="Ends with 0, with 1 when the program does not compile, --until did not come true or an error has stopped the PLC, with 2 for a"
         " wrong use.",
     )
-    run.add_argument("program", type=Path, metavar="PROJECT", help="a project folder or an .il file")
-    run.add_argument("--model", choices=list(MODELS), help="EC20 unless the project says otherwise")
+    _takes_program(run)
     run.add_argument("--ms", type=positive, metavar="N", help="run N ms of simulated time as fast as it goes")
     run.add_argument("--until", default="", metavar="TEST", help='run until Y0 is ON, or "D0>=5" holds; at most --ms, or 60000')
     run.add_argument(
@@ -78,8 +76,7 @@ def _parser() -> argparse.ArgumentParser:
         description="Run a program in real time and answer Modbus clients until Ctrl-C.",
         epilog="Ends with 0, with 2 when the program does not compile or a line cannot be opened.",
     )
-    served.add_argument("program", type=Path, metavar="PROJECT", help="a project folder or an .il file")
-    served.add_argument("--model", choices=list(MODELS), help="EC20 unless the project says otherwise")
+    _takes_program(served)
     served.add_argument("--tcp", type=int, metavar="PORT", help="answer on this TCP port, 0 for any free one")
     served.add_argument("--rtu", metavar="DEVICE", help="answer on this serial port in RTU mode")
     served.add_argument("--ascii", metavar="DEVICE", help="answer on this serial port in ASCII mode")
@@ -95,9 +92,8 @@ def _parser() -> argparse.ArgumentParser:
         description="Turn a program for EC10 or EC20 into one for H1U or H2U, or back, and report what differs.",
         epilog="Ends with 0, with 1 and all reasons when the program does not compile or cannot be kept, with 2 for a wrong use.",
     )
-    into.add_argument("program", type=Path, metavar="PROGRAM", help="an .il file or a project folder")
+    _takes_program(into)
     into.add_argument("--to", choices=list(MODELS), required=True, help="the model that it is to be for")
-    into.add_argument("--model", choices=list(MODELS), help="the model that it is for; EC20 unless the file or project says otherwise")
     into.add_argument("--out", type=Path, metavar="FILE", help="write the program to this file, and the report to the screen")
     into.set_defaults(act=_translate)
     taken = commands.add_parser(
@@ -116,9 +112,8 @@ def _parser() -> argparse.ArgumentParser:
         description="Write a program for H1U or H2U as CSV of Mitsubishi's software, or as a plain list where the name ends in .txt.",
         epilog="Ends with 0, with 1 when the program does not compile, with 2 for one of another family.",
     )
-    given.add_argument("program", type=Path, metavar="PROGRAM", help="an .il file or a project folder")
+    _takes_program(given, usual="H2U")
     given.add_argument("file", type=Path, metavar="FILE", help="NAME.csv or NAME.txt")
-    given.add_argument("--model", choices=list(MODELS), help="H2U unless the file or project says otherwise")
     given.set_defaults(act=_export)
     tell = commands.add_parser("help", help="tell about an instruction", description="Tell about an instruction, a section, or list all.")
     tell.add_argument("name", nargs="?", default="", metavar="NAME", help="an instruction (ADD) or a section of the manual (6.3)")
@@ -126,6 +121,13 @@ def _parser() -> argparse.ArgumentParser:
     tell.set_defaults(act=_help)
     add_commands(commands)
     return parser
+
+
+def _takes_program(command: argparse.ArgumentParser, usual: str = "EC20") -> None:
+    command.add_argument("program", type=Path, metavar="PROGRAM", help="an .il file or a project folder")
+    command.add_argument(
+        "--model", choices=list(MODELS), help=f"the model that it is for; {usual} unless the file or project says otherwise"
+    )
 
 
 def _cases(options: argparse.Namespace) -> int:

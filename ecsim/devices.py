@@ -37,8 +37,7 @@ class Bits:
     index_area: str = "Z"
 
     def __str__(self) -> str:
-        tail = "" if self.index is None else f"{self.index_area}{self.index}"
-        return f"K{self.digits}{self.area}{number_text(self.area, self.number)}{tail}"
+        return f"K{self.digits}{Device(self.area, self.number, self.index, self.index_area)}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -113,6 +113,20 @@ class Wires:
         return f"<{FACES[self.unit]} {[self[channel] for channel in range(len(self))]}>"
 
 
+class Terminals:
+    """The terminals of analog inputs by what is measured; `_wires` gives those of one kind of signal."""
+
+    @property
+    def volts(self) -> Wires:
+        """Voltages on the inputs."""
+        return self._wires("V")
+
+    @property
+    def milliamperes(self) -> Wires:
+        """Currents into the inputs."""
+        return self._wires("mA")
+
+
 def known_channel(channel: int, count: int) -> int:
     """The number of a channel, if there is one of that number; raises EcsimError."""
     if isinstance(channel, bool) or channel not in range(count):
@@ -192,7 +206,7 @@ def analog_channels(base: Any, modules: Any) -> list[Channel]:
     return found
 
 
-class BaseAnalog(Unit):
+class BaseAnalog(Terminals, Unit):
     """The analog channels of the base unit (appendix 1, section 11; appendix 2, section 13): `plc.analog.volts[0] = 2.5`.
 
     Relays enable the channels and choose between voltage and current. A channel takes samples while it is enabled; the
@@ -209,16 +223,6 @@ class BaseAnalog(Unit):
         self.time = 0
 
     # -- the terminals ------------------------------------------------------------------------------------------
-
-    @property
-    def volts(self) -> Wires:
-        """Voltages on the inputs."""
-        return self._wires("V")
-
-    @property
-    def milliamperes(self) -> Wires:
-        """Currents into the inputs."""
-        return self._wires("mA")
 
     def _wires(self, unit: str) -> Wires:
         self._must_be_there()

@@ -13,7 +13,7 @@ from ..memory import Memory
 from ..models import Model
 from ..models.model import AnalogMode, ModuleKind
 from ..values import signed16
-from .analog import FACES, MOST_SAMPLES, USUAL_SAMPLES, Mean, Wires, number_of, signal_of, ticks
+from .analog import FACES, MOST_SAMPLES, USUAL_SAMPLES, Mean, Terminals, Wires, number_of, signal_of, ticks
 from .faults import SystemErrors
 from .supply import Supply
 from .unit import Unit
@@ -118,7 +118,7 @@ class Module(Extension):
         return f"<{type(self).__name__} {len(self.buffers)} buffers>"
 
 
-class AnalogModule(Module):
+class AnalogModule(Terminals, Module):
     """A 4AD, 4DA, 4PT, 4TC ...: `module.volts[0] = 2.5` puts a signal on an input, `module.output_volts[1]` tells what an output gives.
 
     Settings that make no sense stand in the buffers as they were written; their channel rests and the status tells of it.
@@ -144,16 +144,6 @@ class AnalogModule(Module):
             self._choose(channel, min(self.type.modes))
 
     # -- signals ------------------------------------------------------------------------------------------------
-
-    @property
-    def volts(self) -> Wires:
-        """Voltages on the inputs."""
-        return self._wires("V")
-
-    @property
-    def milliamperes(self) -> Wires:
-        """Currents into the inputs."""
-        return self._wires("mA")
 
     @property
     def degrees(self) -> Wires:
