@@ -150,13 +150,17 @@ def shorten(stage: Stage, broken: dict[str, Broken], budget: int = SHORTENING) -
     """Make the choices of each failure simpler as long as the rule still breaks, and no later."""
     for name in broken:
         best, again = broken[name], True
+        tried = [best.values]  # the usual values can be made simpler too: without this they would come again and again
         while again:
             again = False
             for values in simpler(best.scenario.choices, best.values):
+                if values in tried:
+                    continue
                 cost = best.finding.scan + 1
                 if budget < 2 * cost:  # a shortened run is repeated for its chart
                     break
                 budget -= cost
+                tried.append(values)
                 trace, _ = stage.run(best.scenario, values, best.finding.scan + 1)
                 finding = best.rule.judge(trace).finding
                 if finding is not None:

@@ -9,7 +9,7 @@ from ecsim_exercises.plant import Point
 
 import ecsim
 from ecsim import EcsimError
-from ecsim.grading import Between, Do, Exercise, Never, Report, Scenario, Within, find_exercise
+from ecsim.grading import Between, Do, Exercise, Never, OneOf, Report, Scenario, Several, Within, find_exercise
 from ecsim.grading.chart import ticks
 from ecsim.grading.choices import usual
 from ecsim.grading.grade import Stage
@@ -105,6 +105,19 @@ def test_the_choices_are_made_simpler(tmp_path):
     failure = report["follows"].failure
     assert 3.0 <= failure.choices["at"] <= 3.6
     assert failure.choices["unused"] == 0
+
+
+def test_no_choice_is_tried_twice_while_a_failure_is_made_simpler(tmp_path):
+    """The usual values 3, 1 can be made simpler as well; from there it is not gone back to them, over and over until no scans are left."""
+    exercise = lamp(tmp_path, Between(1.0, 2.0))
+    [scenario] = exercise.scenarios
+    choices = {**scenario.choices, "order": Several(OneOf(1, 2, 3), 1, 4, usual=[3, 1])}
+    exercise = replace(exercise, scenarios=[replace(scenario, choices=choices, draws=0)])
+    report = exercise.grade("LDI X0\nOUT Y0")
+    assert report["dark"].failure.choices == {"at": 1.0, "unused": 0, "order": [1]}
+    assert report["dark"].failure.scan == 1  # one scan is let pass
+    # The whole run; then for each of the two rules, as both break: [3], [1], and this one again for its chart.
+    assert report.runs == 7
 
 
 def lamp(folder, at):
