@@ -52,13 +52,18 @@ def free_port() -> int:
 
 
 @contextlib.contextmanager
-def server(folder: Path, home: Path) -> Iterator[tuple[str, str]]:
-    """A JupyterLab on a folder, with Notebook 7 under /notebooks: its address and token. Nothing of the person's own settings has a say in it."""
+def server(folder: Path, home: Path, static: Path | None = None) -> Iterator[tuple[str, str]]:
+    """A JupyterLab on a folder, with Notebook 7 under /notebooks: its address and token. Nothing of the person's own settings has a say in it.
+
+    What lies in `static` is served under /static as well.
+    """
     port, token = free_port(), secrets.token_hex(16)
     command = [sys.executable, "-m", "jupyterlab", "--no-browser", "--expose-app-in-browser", "--ServerApp.ip=127.0.0.1"]
     command += [f"--ServerApp.port={port}", "--ServerApp.port_retries=0", f"--ServerApp.root_dir={folder}"]
     command += [f"--IdentityProvider.token={token}", "--JupyterNotebookApp.expose_app_in_browser=True"]
     command += ["--LanguageServerManager.autodetect=False", *(["--allow-root"] if hasattr(os, "geteuid") and os.geteuid() == 0 else [])]
+    if static is not None:
+        command.append(f"--ServerApp.extra_static_paths={static}")
     environment = {**os.environ, **{name: str(home / name.lower()) for name in HOMES}, "JUPYTER_CONFIG_PATH": str(ROOT)}
     process = subprocess.Popen(
         command, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True

@@ -37,10 +37,11 @@ class Server:
 
 
 @pytest.fixture(scope="session")
-def server(tmp_path_factory):
-    """JupyterLab on an empty folder; nothing of the person's own settings has a say in it."""
+def server(root, tmp_path_factory):
+    """JupyterLab on an empty folder; nothing of the person's own settings has a say in it. VS Code's widget manager is served if it is there."""
     folder, home = tmp_path_factory.mktemp("notebooks"), tmp_path_factory.mktemp("jupyter")
-    with labserver.server(folder, home) as (address, token):
+    static = root / "build" / "vs_code" / "site"
+    with labserver.server(folder, home, static if static.exists() else None) as (address, token):
         yield Server(address, token, folder)
 
 

@@ -177,11 +177,14 @@ VSCODE = {
         "font-family": "sans-serif",
     },
 }
-HOST = """([classes, variables]) => {
+# The widget manager brings these along in every theme.
+BROUGHT = {"--jp-layout-color0": "white", "--jp-ui-font-color1": "rgba(0, 0, 0, 0.87)", "--jp-brand-color1": "#1976d2"}
+HOST = """([classes, variables, brought]) => {
   document.body.removeAttribute('data-jp-theme-light');
   document.body.className = classes;
   document.body.style.background = '#ffffff';
   for (const [name, value] of Object.entries(variables)) document.documentElement.style.setProperty(`--vscode-${name}`, value);
+  for (const [name, value] of Object.entries(brought)) document.documentElement.style.setProperty(name, value);
 }"""
 WORDS = """() => {
   const clipped = (box, node) => {
@@ -261,7 +264,7 @@ def faint(page):
 
 def test_everything_can_be_read_in_vs_code(shown):
     for classes, variables in VSCODE.items():
-        shown.js(HOST, [classes, variables])
+        shown.js(HOST, [classes, variables, BROUGHT])
         shown.frame()
         paper = shown.js("() => getComputedStyle(document.querySelector('.ec-root')).backgroundColor")
         assert (luminance(map(int, re.findall(r"\d+", paper))) < 0.1) == (classes in ("vscode-dark", "vscode-high-contrast"))
