@@ -39,8 +39,7 @@ panels.chart = (place, layout, page, view) => {
   let zoom = view.chartZoom ?? 1;
   let seen = null; // the heights that Python was told of
   let watched; // the step that was brought into view last
-  let due;
-  let pieces = []; // what the drawing is made of, with the heights between which each piece lies
+  let strips = []; // what the drawing is made of, with the heights between which each strip lies
   const followed = section.querySelector('[data-act="follow"]');
   const follows = () => followed.getAttribute("aria-pressed") === "true";
   for (const hand of ["wheel", "touchmove"]) main.addEventListener(hand, () => set(followed, "aria-pressed", "false"), { passive: true });
@@ -60,7 +59,7 @@ panels.chart = (place, layout, page, view) => {
     soon();
   }
   function look() {
-    due = undefined;
+    track();
     const [top, high] = [main.scrollTop / zoom, main.clientHeight / zoom];
     if (!drawing || !high) return;
     const end = drawing.svg.viewBox.baseVal.height;
@@ -72,14 +71,14 @@ panels.chart = (place, layout, page, view) => {
   }
   // Of a large drawing the browser lays out and paints only what is near the view.
   function bare() {
-    for (const piece of pieces) {
-      const hidden = piece.bottom < seen[0] || piece.top > seen[1];
-      if (hidden === piece.hidden || (hidden && piece.node.contains(document.activeElement))) continue;
-      piece.hidden = hidden;
-      piece.node.style.display = hidden ? "none" : "";
+    for (const strip of strips) {
+      const hidden = strip.bottom < seen[0] || strip.top > seen[1];
+      if (hidden === strip.hidden || (hidden && strip.node.contains(document.activeElement))) continue;
+      strip.hidden = hidden;
+      strip.node.style.display = hidden ? "none" : "";
     }
   }
-  const soon = () => (due ??= requestAnimationFrame(look));
+  const soon = () => work.look(look);
   main.addEventListener("scroll", soon, { passive: true });
   const room = new ResizeObserver(soon);
   room.observe(main);
@@ -102,7 +101,7 @@ panels.chart = (place, layout, page, view) => {
     drawing.apply(state);
     scale();
     main.scrollTo(left, top);
-    pieces = [...drawing.svg.children].flatMap((node) => {
+    strips = [...drawing.svg.children].flatMap((node) => {
       const box = node.getBBox?.();
       return box?.height || box?.width ? [{ node, top: box.y, bottom: box.y + box.height, hidden: false }] : [];
     });
@@ -144,7 +143,7 @@ panels.chart = (place, layout, page, view) => {
       follow: () => {
         set(followed, "aria-pressed", String(!follows()));
         watched = undefined;
-        track();
+        soon();
       },
       hold: () => page.say("chart", "hold", { on: !state.held }),
       break: () => page.say("chart", "break", { step }),
@@ -190,7 +189,6 @@ panels.chart = (place, layout, page, view) => {
     const usual = state[`${device}.usual`];
     if (usual) lines.push(["usual", `${seconds(usual[0], 2)} s, ${number(usual[1])} ${usual[1] === 1 ? "time" : "times"}`]);
     if (step.then.length) lines.push(["then", step.then.map((one) => `<span class="mono">${escaped(one)}</span>`).join(" or ")]);
-    const markup = lines.map(([word, text]) => `<dt>${word}</dt><dd>${text}</dd>`).join("");
     const [ways, active_now] = [step.ways ?? [], Boolean(now)];
     const fires = ways.map((to) => `<button class="tool" data-act="fire" data-testid="fire-${to.join("-") || "end"}" data-to="${ways.length > 1 ? (to[0] ?? "") : ""}" title="Take this transition now, whether its condition holds or not (F)"${active_now && !page.dead ? "" : " disabled"}>${icon("fire")}Fire → <span class="mono">${escaped(to.join(" ") || "end")}</span></button>`).join("");
     if (fired.dataset.markup !== fires) fired.innerHTML = fired.dataset.markup = fires;
@@ -198,7 +196,7 @@ panels.chart = (place, layout, page, view) => {
     set(breaks, "aria-pressed", String(device in (state.breaks ?? {})));
     for (const button of [breaks, section.querySelector('[data-act="hold"]')]) button.disabled = page.dead;
     for (const [act, off] of [["set", active_now], ["reset", !active_now]]) section.querySelector(`[data-act="${act}"]`).disabled = off || page.dead;
-    if (facts.dataset.markup !== markup) facts.innerHTML = facts.dataset.markup = markup;
+    pieces(facts, lines.flatMap(([word, text]) => [`<dt>${word}</dt>`, `<dd>${text}</dd>`]));
   }
 
   return {
@@ -215,13 +213,13 @@ panels.chart = (place, layout, page, view) => {
         write(sub, `${changes.active.length} of ${Object.keys(layout.steps).length} active`);
         mark();
       }
-      if (changes.active || changes.svg) track();
-      if (changes.svg) look();
+      if (changes.active || changes.svg) soon();
       explain();
       if (changes.log)
-        log.innerHTML = changes.log
-          .map(([time_us, from, to, why]) => `<li><span>${seconds(time_us)}</span><span><span class="mono">${escaped(from && to ? `${from} → ${to}` : to || `${from} ended`)}</span><small>${escaped(why)}</small></span></li>`)
-          .join("");
+        pieces(
+          log,
+          changes.log.map(([time_us, from, to, why]) => `<li><span>${seconds(time_us)}</span><span><span class="mono">${escaped(from && to ? `${from} → ${to}` : to || `${from} ended`)}</span><small>${escaped(why)}</small></span></li>`),
+        );
     },
     rest(dead) {
       sizes.rest(dead);
@@ -231,7 +229,7 @@ panels.chart = (place, layout, page, view) => {
     },
     close() {
       page.say("chart", "unsee", { view: id });
-      cancelAnimationFrame(due);
+      work.drop(look);
       room.disconnect();
       sizes.close();
     },

@@ -64,6 +64,7 @@ panels.devices = (place, layout, page, view) => {
   let picked = -1; // the offer that the arrows are at
   let arranged = ["", "", false, ""];
   const slots = [];
+  let [top, high] = [0, 0]; // from where and how much of the rows is in sight, in px
 
   const say = (verb, values) => page.say("devices", verb, values);
   const numberAt = (index) => shown[1][index - shown[0]];
@@ -72,7 +73,7 @@ panels.devices = (place, layout, page, view) => {
 
   const slotFor = (index) => slots[index % slots.length];
   function makeSlots() {
-    const count = Math.ceil((rows.clientHeight || SHOWN * ROW_PX) / ROW_PX) + 1 + 2 * SPARE;
+    const count = Math.ceil((high || SHOWN * ROW_PX) / ROW_PX) + 1 + 2 * SPARE;
     if (slots.length >= count) return;
     for (const slot of slots) slot.index = -1;
     while (slots.length < count) {
@@ -165,7 +166,7 @@ panels.devices = (place, layout, page, view) => {
 
   function lay() {
     makeSlots();
-    const first = Math.max(0, Math.min(Math.floor(rows.scrollTop / ROW_PX) - SPARE, shown[2] - slots.length));
+    const first = Math.max(0, Math.min(Math.floor(top / ROW_PX) - SPARE, shown[2] - slots.length));
     for (let index = first; index < first + slots.length; index++) {
       const slot = slotFor(index);
       if (slot.index !== index) {
@@ -179,8 +180,13 @@ panels.devices = (place, layout, page, view) => {
       say("window", { view: id, first, count: slots.length });
     }
   }
-  let laying;
-  rows.addEventListener("scroll", () => (laying ??= requestAnimationFrame(() => ((laying = undefined), plate.close(), lay()))));
+  function look() {
+    const before = top;
+    [top, high] = [rows.scrollTop, rows.clientHeight];
+    if (top !== before) plate.close();
+    lay();
+  }
+  rows.addEventListener("scroll", () => work.look(look));
   const refill = () => slots.forEach((slot) => slot.index >= 0 && fill(slot));
 
   // What a value was before it changed, and for a moment that it has just changed.
@@ -206,10 +212,10 @@ panels.devices = (place, layout, page, view) => {
   function choose(index, scroll = false) {
     here = Math.max(0, Math.min(index, shown[2] - 1));
     if (scroll) {
-      const [top, high] = [here * ROW_PX, rows.clientHeight];
-      if (top < rows.scrollTop) rows.scrollTop = top;
-      else if (top + ROW_PX > rows.scrollTop + high) rows.scrollTop = top + ROW_PX - high;
-      lay();
+      const [above, below] = [here * ROW_PX, (here + 1) * ROW_PX - rows.clientHeight];
+      if (above < rows.scrollTop) rows.scrollTop = above;
+      else if (below > rows.scrollTop) rows.scrollTop = below;
+      look();
     }
     mark();
   }
@@ -347,17 +353,25 @@ panels.devices = (place, layout, page, view) => {
     write(nothing, count ? "No row is like that." : "Nothing is watched. Type a name, a device or a range above.");
   }
 
-  const sizes = new ResizeObserver(() => requestAnimationFrame(lay));
+  const sizes = new ResizeObserver(() => work.look(look));
   sizes.observe(rows);
 
   return {
     apply(changes, now) {
-      for (const key of Object.keys(changes))
-        if (key.startsWith("row.") && !key.endsWith(".of")) {
-          const number_ = Number(key.slice(4));
-          if (now[key]) note(number_, state[key], now[key]);
-          else known.delete(number_);
+      const touched = new Set();
+      let others = false; // what is not of a row
+      for (const key of Object.keys(changes)) {
+        const [kind, text, of] = key.split(".");
+        if (kind !== "row") {
+          others = true;
+          continue;
         }
+        const number_ = Number(text);
+        touched.add(number_);
+        if (of) continue;
+        if (now[key]) note(number_, state[key], now[key]);
+        else known.delete(number_);
+      }
       state = { ...now };
       for (const [key, value] of Object.entries(now)) if (value === null) delete now[key]; // rows out of sight are forgotten
       const mine = `shown.${id}` in now ? `shown.${id}` : Object.keys(now).find((key) => key.startsWith("shown."));
@@ -372,9 +386,9 @@ panels.devices = (place, layout, page, view) => {
         arranged = changes.as;
         if (document.activeElement !== finder) finder.value = arranged[0];
       }
-      tools();
+      if (others) tools();
       lay();
-      refill();
+      for (const slot of slots) if (slot.index >= 0 && (others || slot.number === null || touched.has(slot.number))) fill(slot);
       if (changes[`offers.${id}`]) offer();
       if (changes[`said.${id}`]) answered(changes[`said.${id}`]);
       plate.show(now);
@@ -390,6 +404,7 @@ panels.devices = (place, layout, page, view) => {
     },
     close() {
       sizes.disconnect();
+      work.drop(look);
       plate.end();
       for (const past of known.values()) clearTimeout(past.timer);
     },

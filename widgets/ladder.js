@@ -28,7 +28,7 @@ panels.ladder = (place, layout, page, view) => {
   follow.addEventListener("click", () => {
     set(follow, "aria-pressed", String(!follows()));
     watched = undefined;
-    track();
+    soon();
   });
   // Whoever scrolls by hand wants to stay where they are.
   for (const hand of ["wheel", "touchmove"]) body.addEventListener(hand, stay, { passive: true });
@@ -38,6 +38,7 @@ panels.ladder = (place, layout, page, view) => {
   let drawing;
   let tops = [0]; // where each network begins, and where the last one ends
   let state = {};
+  let [top, high] = [0, 0]; // from where and how much of it is in sight, in px
   let near = null; // the first and last network of those in and near sight
   let seen = ""; // the networks that Python was told of
   let goal = null; // { number, position } to go to as soon as it is drawn
@@ -58,8 +59,8 @@ panels.ladder = (place, layout, page, view) => {
     return low;
   }
   function anchor() {
-    const number = numberAt(body.scrollTop);
-    return { number, offset: body.scrollTop - tops[number] };
+    const number = numberAt(top);
+    return { number, offset: top - tops[number] };
   }
   function draw(sheet) {
     const kept = drawing ? anchor() : view.ladderAt; // a program that was changed is shown where the old one was
@@ -115,16 +116,15 @@ panels.ladder = (place, layout, page, view) => {
   // One stop of Tab: what is chosen, else the first element that can be seen.
   function stop() {
     if (body.querySelector('[data-position][tabindex="0"]')) return;
-    const first = element(chosen) ?? nets.get(numberAt(body.scrollTop))?.node.querySelector("[data-position]") ?? body.querySelector("[data-position]");
+    const first = element(chosen) ?? nets.get(numberAt(top))?.node.querySelector("[data-position]") ?? body.querySelector("[data-position]");
     if (first) first.tabIndex = 0;
   }
   roving(body, () => [...body.querySelectorAll("[data-position]")]);
 
   // Tells Python about three screens of networks, again as soon as less than half a screen is left above or below.
-  let due;
   function look() {
-    due = undefined;
-    const [top, high] = [body.scrollTop, body.clientHeight];
+    track();
+    [top, high] = [body.scrollTop, body.clientHeight];
     if (!drawing || !high || !count()) return;
     const first = numberAt(top);
     if (!near || numberAt(top - high / 2) < near[0] || numberAt(top + 1.5 * high) > near[1]) {
@@ -132,8 +132,8 @@ panels.ladder = (place, layout, page, view) => {
       if (furnish()) {
         drawing.apply(state);
         mark();
-        stop();
       }
+      stop();
     }
     const shown = nets.get(first)?.node;
     write(where, `Network ${number(first + 1)} of ${number(count())}`);
@@ -143,7 +143,7 @@ panels.ladder = (place, layout, page, view) => {
     seen = String(near);
     page.say("ladder", "see", { view: id, first: near[0], last: near[1] });
   }
-  const soon = () => (due ??= requestAnimationFrame(look));
+  const soon = () => work.look(look);
   body.addEventListener("scroll", soon, { passive: true });
   const room = new ResizeObserver(soon);
   room.observe(body);
@@ -351,14 +351,15 @@ panels.ladder = (place, layout, page, view) => {
     apply(changes, now) {
       state = now;
       if (changes.sheet) draw(changes.sheet);
-      const fresh = furnish() || changes.sheet;
+      const others = Object.keys(changes).some((key) => key === "live" || key.startsWith("net."));
+      const fresh = (others && furnish()) || changes.sheet;
       drawing?.apply(fresh ? now : changes);
       if (fresh || changes.breaks || changes.active) mark();
       plate.show(now);
-      if (changes.active) track();
+      if (changes.active) soon();
       if (changes.hit && String(changes.hit) !== stoppedAt) go(...changes.hit, false);
       if ("hit" in changes) stoppedAt = String(changes.hit);
-      stop();
+      if (others) stop();
       arrive();
     },
     rest(dead) {
@@ -376,7 +377,7 @@ panels.ladder = (place, layout, page, view) => {
     },
     close() {
       page.say("ladder", "unsee", { view: id });
-      cancelAnimationFrame(due);
+      work.drop(look);
       sizes.close();
       room.disconnect();
       plate.end();

@@ -1,10 +1,12 @@
 // What all panels share: the link to the kernel, the frame around a panel, the drawings that only change attributes.
 // Every panel's own file adds one function to `panels`. Python puts the files together; there is no build step.
 //
-//   panels.unit = (place, layout, page) => ({ apply(changes, state), pulsed(keys), rest(dead) })
+//   panels.unit = (place, layout, page) => ({ apply(changes, state), run(run), pulsed(keys), rest(dead) })
 //
-// `place` is the element to fill, `layout` what Python said once, `page` the link. `apply` gets the entries that
-// changed and the whole state; `pulsed` the bits that were on between two frames; `rest` whether the kernel is gone.
+// `place` is the element to fill, `layout` what Python said once, `page` the link. `apply` gets the entries that have
+// changed since it was called last, and the whole state; `run` that of the run itself; `pulsed` the bits that were on between two
+// frames; `rest` whether the kernel is gone. They only write: what a panel has to know of sizes and scrolling it finds out by
+// `work.look`, or the browser would have to lay out the page in the middle of drawing it.
 
 const panels = {};
 const HOLD_MS = 700; // --ec-t-hold: how long a one-scan mark stays
@@ -12,8 +14,9 @@ const SILENCE_MS = 2500; // an unanswered question means that there is no kernel
 const KEY = "EC0-"; // the prefix of all ids in a drawing as Python sends it; made unique for every view
 
 const escaped = (text) => String(text ?? "").replace(/[&<>"']/g, (sign) => `&#${sign.charCodeAt(0)};`);
+const DIGITS = []; // a format of numbers for each count of digits behind the point
 const number = (value, digits = 0) =>
-  Number(value).toLocaleString("en-US", { minimumFractionDigits: digits, maximumFractionDigits: digits }).replace("-", "−");
+  (DIGITS[digits] ??= new Intl.NumberFormat("en-US", { minimumFractionDigits: digits, maximumFractionDigits: digits })).format(Number(value)).replace("-", "−");
 const seconds = (us, digits = 3) => number(us / 1e6, digits);
 
 const ICONS = {
@@ -44,14 +47,76 @@ function set(node, attribute, value) {
   else if (node.getAttribute(attribute) !== String(value)) node.setAttribute(attribute, value);
 }
 function write(node, text) {
-  if (node.textContent !== text) node.textContent = text;
+  const inside = node.firstChild;
+  if (inside?.nodeType === Node.TEXT_NODE && inside === node.lastChild) inside.data !== text && (inside.data = text);
+  else if (node.textContent !== text) node.textContent = text;
 }
+
+// Puts elements into another one, each as markup; those that are there already stay as they are.
+function pieces(host, markups) {
+  const before = [...host.children];
+  const holder = document.createElement("template");
+  const nodes = markups.map((markup) => {
+    const known = before.findIndex((node) => node.markup === markup);
+    if (known >= 0) return before.splice(known, 1)[0];
+    holder.innerHTML = markup;
+    return Object.assign(holder.content.firstElementChild, { markup });
+  });
+  for (const node of before) node.remove();
+  for (const [at, node] of nodes.entries()) if (host.children[at] !== node) host.insertBefore(node, host.children[at] ?? null);
+}
+
+// The work of the page, in one queue, so that a frame of the animation never becomes long. A frame begins with what looks at sizes and
+// scrolls, before anything is written; then panels are drawn until DRAW_MS is spent, and those left over come first in the next
+// frame. A panel that is out of sight is drawn a few times a second: who scrolls there or has it read aloud finds it as it is.
+const [DRAW_MS, AWAY_MS] = [3, 250];
+const work = {
+  looks: new Set(),
+  draws: new Map(), // what draws -> the element that it draws in
+  drawn: new WeakMap(), // what draws -> when it did
+  away: new WeakSet(), // the elements that are out of sight
+  sights: new IntersectionObserver((seen) => seen.forEach(({ target, isIntersecting }) => work.away[isIntersecting ? "delete" : "add"](target)), { rootMargin: "200px", scrollMargin: "200px" }),
+  look(job) {
+    this.looks.add(job);
+    this.next();
+  },
+  draw(job, node) {
+    if (!this.draws.has(job)) this.draws.set(job, node);
+    this.next();
+  },
+  drop(job) {
+    this.looks.delete(job);
+    this.draws.delete(job);
+  },
+  next() {
+    clearTimeout(this.later);
+    this.frame ??= requestAnimationFrame(() => this.do());
+  },
+  do() {
+    this.frame = undefined;
+    const looks = [...this.looks];
+    this.looks.clear();
+    for (const look of looks) look();
+    const began = performance.now();
+    let waits = AWAY_MS;
+    for (const [job, node] of [...this.draws]) {
+      if (performance.now() - began >= DRAW_MS) return this.next();
+      const rests = this.away.has(node) ? (this.drawn.get(job) ?? -AWAY_MS) + AWAY_MS - began : 0;
+      if (rests > 0) waits = Math.min(waits, rests);
+      else if (this.draws.delete(job)) {
+        this.drawn.set(job, began);
+        job();
+      }
+    }
+    if (this.draws.size && !this.frame) this.later = setTimeout(() => this.next(), waits);
+  },
+};
 
 // The frame of a panel: title, what it shows, tools, the stamp of the moment.
 function frame(place, { title, sub = "", key, tools = "" }) {
   place.innerHTML = `
     <section class="panel" aria-label="${escaped(title)}" data-testid="${key}">
-      <header class="panel-head"><h2>${escaped(title)}</h2><span class="sub">${escaped(sub)}</span><span class="gap"></span>${tools}<span class="stamp"></span></header>
+      <header class="panel-head${tools ? " with-tools" : ""}"><h2>${escaped(title)}</h2><span class="sub">${escaped(sub)}</span><span class="gap"></span>${tools}<span class="stamp"></span></header>
       <div class="panel-body"></div>
     </section>`;
   const section = place.firstElementChild;
@@ -71,7 +136,7 @@ class Drawing {
   find(key) {
     let node = this.known.get(key);
     if (node === undefined) {
-      node = this.svg.querySelector(`[id="${CSS.escape(this.prefix + key)}"]`);
+      node = this.svg.querySelector(`#${CSS.escape(this.prefix + key)}`);
       this.known.set(key, node);
     }
     return node;
@@ -116,14 +181,17 @@ function fitting(part, body, page) {
     asked = width;
     page.say(part, "fit", { width });
   };
-  const sizes = new ResizeObserver(() => requestAnimationFrame(fit));
+  const sizes = new ResizeObserver(() => work.look(fit));
   sizes.observe(body);
   return {
     rest(dead) {
       if (dead) asked = undefined;
       else fit();
     },
-    close: () => sizes.disconnect(),
+    close() {
+      sizes.disconnect();
+      work.drop(fit);
+    },
   };
 }
 
@@ -167,8 +235,6 @@ class Page {
     this.layout = model.get("face") ?? {};
     this.state = structuredClone(model.get("last") ?? {});
     this.views = new Set();
-    this.waiting = null;
-    this.pulses = {};
     this.requests = new Map(); // what the page has asked for and awaits, by number
     this.dead = false;
     this.heard = performance.now();
@@ -220,33 +286,13 @@ class Page {
     if (message.layout) {
       this.layout = message.layout;
       this.model.set("face", message.layout);
-      for (const view of this.views) view.build();
     }
-    if (message.full) {
-      this.state = {};
-      this.waiting = null;
-    }
-    if (message.state) this.merge(message.state);
-    for (const [part, keys] of Object.entries(message.pulsed ?? {})) (this.pulses[part] ??= new Set(keys)) && keys.forEach((key) => this.pulses[part].add(key));
-    this.drawn ??= requestAnimationFrame(() => this.draw());
-  }
-  merge(state) {
-    this.waiting ??= {};
-    for (const [part, entries] of Object.entries(state)) {
+    if (message.full) this.state = {};
+    for (const [part, entries] of Object.entries(message.state ?? {})) {
       const known = (this.state[part] ??= {});
       for (const [key, value] of Object.entries(entries)) value === null ? delete known[key] : (known[key] = value);
-      Object.assign((this.waiting[part] ??= {}), entries);
     }
-  }
-  draw() {
-    this.drawn = undefined;
-    const changes = this.waiting ?? {};
-    for (const view of this.views) {
-      view.apply(changes);
-      view.pulsed(this.pulses);
-    }
-    this.waiting = null;
-    this.pulses = {};
+    for (const view of this.views) message.layout ? view.build() : view.wait(message);
     // Kept in the page alone, so that a notebook saved with its widgets shows the last state when it is opened again.
     this.model.set("last", this.state);
   }
@@ -272,8 +318,9 @@ class View {
   }
   build() {
     const { parts = [], panels: layouts = {} } = this.page.layout;
-    for (const panel of Object.values(this.parts ?? {})) panel.close?.();
+    this.end();
     this.parts = {};
+    this.waiting = {}; // part -> { changes, run, pulses, draw, place }: what has come since it was drawn
     const grid = document.createElement("div");
     grid.className = parts.length > 1 ? "lab" : "alone";
     this.root.replaceChildren(grid);
@@ -282,32 +329,56 @@ class View {
       place.className = `area area-${part}`;
       grid.append(place);
       this.parts[part] = panels[part](place, layouts[part] ?? {}, this.page, this);
+      this.waiting[part] = { draw: () => this.draw(part), place };
+      work.sights.observe(place);
     }
     if (parts.length > 1) {
-      set(grid, "data-chart", parts.includes("chart") ? "" : null);
-      this.parts.columns = { close: columns(grid, layouts.ladder?.least), apply() {} };
+      for (const part of ["chart", "machine"]) set(grid, `data-${part}`, parts.includes(part) ? "" : null);
+      this.columns = columns(grid, layouts.ladder?.least);
     }
-    this.apply(this.page.state);
+    this.wait({ state: this.page.state });
+    for (const part of parts) this.draw(part);
     this.rest(this.page.dead);
   }
-  apply(changes) {
-    for (const [part, panel] of Object.entries(this.parts)) {
-      if (changes.run) panel.run?.(this.page.state.run);
-      if (changes[part]) panel.apply(changes[part], this.page.state[part]);
+  end() {
+    for (const panel of Object.values(this.parts ?? {})) panel.close?.();
+    for (const { draw, place } of Object.values(this.waiting ?? {})) {
+      work.drop(draw);
+      work.sights.unobserve(place);
     }
-    if (changes.run) this.stamp();
+    this.columns?.();
+    this.columns = undefined;
   }
-  pulsed(pulses) {
-    for (const [part, keys] of Object.entries(pulses)) this.parts[part]?.pulsed?.(keys);
+  // What comes now goes on top of what still waits, or takes its place.
+  wait({ state = {}, pulsed = {}, full = false }) {
+    for (const [part, waits] of Object.entries(this.waiting)) {
+      if (state[part]) waits.changes = full ? { ...state[part] } : Object.assign(waits.changes ?? {}, state[part]);
+      if (pulsed[part]) waits.pulses = [...new Set([...(waits.pulses ?? []), ...pulsed[part]])];
+      waits.run ||= Boolean(state.run);
+      if (waits.changes || waits.pulses || (waits.run && this.told(part))) work.draw(waits.draw, waits.place);
+    }
+  }
+  told(part) {
+    return this.parts[part].run || this.root.firstElementChild.className === "alone";
+  }
+  draw(part) {
+    const [panel, { state }, waits] = [this.parts[part], this.page, this.waiting[part]];
+    const { changes, run, pulses } = waits;
+    Object.assign(waits, { changes: undefined, run: false, pulses: undefined });
+    if (run) panel.run?.(state.run);
+    if (changes) panel.apply(changes, state[part]);
+    if (pulses) panel.pulsed?.(pulses);
+    if (run) this.stamp();
   }
   rest(dead) {
     set(this.root, "data-dead", dead ? "" : null);
     for (const panel of Object.values(this.parts)) panel.rest?.(dead);
     this.stamp();
   }
+  // The moment that is shown; among other panels, where the run control tells it, only of a last state.
   stamp() {
     const run = this.page.state.run;
-    if (!run) return;
+    if (!run || (!this.page.dead && this.root.firstElementChild.className === "lab")) return;
     const moment = this.page.dead ? `last state · scan ${number(run.scan)}` : `scan ${number(run.scan)} · ${seconds(run.time_us)} s`;
     for (const node of this.root.querySelectorAll(".stamp")) write(node, moment);
   }
@@ -322,7 +393,7 @@ class View {
   }
   close() {
     this.page.views.delete(this);
-    for (const panel of Object.values(this.parts)) panel.close?.();
+    this.end();
     this.root.remove();
   }
 }

@@ -50,6 +50,7 @@ panels.transport = (place, layout, page) => {
     </section>`;
   const find = (selector) => place.querySelector(selector);
   const [section, chip, slider, plant] = [".transport", ".chip", ".speedbar", ".toggle"].map(find);
+  const speeds = place.querySelectorAll(".speed text");
   const keycaps = [...place.querySelectorAll(".keycap")];
 
   let run = {};
@@ -91,10 +92,11 @@ panels.transport = (place, layout, page) => {
 
   // -- the past: the handle stands where the page stands; dragged, the page shows that moment.
   const line = find(".history .line");
+  const [marks, done, handle] = [".events", "b", "u"].map((part) => line.querySelector(part));
   let state = {};
   const last = () => (run.scan ?? 0) + (run.back ?? 0);
   const share = (scan) => (last() > state.first ? Math.max(0, Math.min(1, (scan - state.first) / (last() - state.first))) : 1);
-  const percent = (scan) => `${(100 * share(scan)).toFixed(2)}%`;
+  const percent = (scan) => `${(100 * share(scan)).toFixed(1)}%`; // about a pixel
   let wanted, asking;
   function seek(scan) {
     const to = Math.max(state.first ?? 0, Math.min(last(), Math.round(scan)));
@@ -134,8 +136,7 @@ panels.transport = (place, layout, page) => {
   function past() {
     if (state.first === undefined) return;
     const period = (run.scan_us ?? 0) || 1;
-    set(line.querySelector("b"), "style", `width:${percent(run.scan)}`);
-    set(line.querySelector("u"), "style", `left:${percent(run.scan)}`);
+    done.style.width = handle.style.left = percent(run.scan);
     write(find(".history .from"), seconds(Math.max(0, (run.time_us ?? 0) - (run.scan - state.first) * period)));
     write(find(".history .to"), run.back || page.dead ? seconds((run.time_us ?? 0) + (run.back_us ?? 0)) : "now");
     write(find(".clock .past"), run.back ? `−${run.back_us < 1e6 ? `${number(run.back_us / 1000)} ms` : `${seconds(run.back_us, 2)} s`}` : "");
@@ -144,12 +145,24 @@ panels.transport = (place, layout, page) => {
     set(line, "aria-valuenow", run.scan);
     set(line, "aria-valuetext", `${seconds(run.time_us ?? 0)} s, ${run.back ? `${number(run.back)} scans back` : "now"}`);
     set(line, "aria-disabled", page.dead ? "true" : null);
-    [...line.querySelectorAll(".ev")].forEach((node, at) => state.events[at] && set(node, "style", `left:${percent(state.events[at][0])}`));
+    for (const one of shown) {
+      const at = percent(one.scan);
+      if (one.at !== at) one.node.style.left = one.at = at;
+    }
   }
+  // Events come at the end and go at the beginning; the marks of those between stay.
+  let shown = [];
   function events() {
-    line.querySelector(".events").innerHTML = (state.events ?? [])
-      .map(([scan, kind, words]) => `<i class="ev ${EVENT[kind]}" title="${escaped(`${words}, scan ${number(scan)}`)}"></i>`)
-      .join("");
+    const before = new Map(shown.map((one) => [one.key, one]));
+    shown = (state.events ?? []).map(([scan, kind, words]) => {
+      const key = `${kind} ${scan} ${words}`;
+      const known = before.get(key);
+      if (known && before.delete(key)) return known;
+      const node = Object.assign(document.createElement("i"), { className: `ev ${EVENT[kind]}`, title: `${words}, scan ${number(scan)}` });
+      marks.append(node);
+      return { key, scan, node };
+    });
+    for (const { node } of before.values()) node.remove();
   }
 
   // -- breakpoints: a list under its button; what cannot be read is refused there and the field keeps it.
@@ -211,7 +224,7 @@ panels.transport = (place, layout, page) => {
     if (run.fault && run.state !== "failed") [glyph, kind, text] = ["cross", "fault", run.fault];
     if (run.refused) [glyph, kind, text] = ["cross", "fault", run.refused];
     if (page.dead) [glyph, kind, text] = ["unplugged", "dead", "Not connected: the last state"];
-    chip.className = `chip ${kind}`;
+    set(chip, "class", `chip ${kind}`);
     set(chip, "role", kind === "fault" ? "alert" : "status");
     set(chip, "title", text);
     const mark = chip.querySelector(".glyph");
@@ -220,7 +233,7 @@ panels.transport = (place, layout, page) => {
       mark.innerHTML = icon(glyph, 14);
     }
     write(chip.querySelector(".cut"), text ?? "");
-    section.className = `transport ${kind}`;
+    set(section, "class", `transport ${kind}`);
     set(section, "data-state", run.state);
   }
 
@@ -261,7 +274,7 @@ panels.transport = (place, layout, page) => {
       const at = detent();
       set(find(".track-on"), "d", `M12 9H${DETENT(at)}`);
       set(find(".thumb"), "x", DETENT(at) - 4.5);
-      [...place.querySelectorAll(".speed text")].forEach((text, index) => text.classList.toggle("here", index === at));
+      speeds.forEach((text, index) => set(text, "class", index === at ? "here" : null));
       set(slider, "aria-valuenow", at);
       set(slider, "aria-valuetext", run.speed == null ? "as fast as possible" : `${run.speed} times real time`);
       set(plant, "aria-checked", String(Boolean(run.plant)));

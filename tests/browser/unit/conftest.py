@@ -14,7 +14,7 @@ from ecsim_widgets.stream import Stream
 
 from ecsim.plc import Plc
 
-EXPORTED = "panels, escaped, number, seconds, named, set, write, frame, icon, Drawing, fitting, roving, columns, Page, View"
+EXPORTED = "panels, work, escaped, number, seconds, named, set, write, frame, icon, Drawing, fitting, roving, columns, Page, View"
 PAGE = """<!doctype html><html><head><meta charset="utf-8"><style>{style}</style></head>
 <body data-jp-theme-light="true" style="margin:0;background:var(--ec-paper)"><div id="place" style="width:100%"></div></body></html>"""
 LINK = """async (source) => {
@@ -42,7 +42,11 @@ LINK = """async (source) => {
     window.ends = [widget.initialize({ model }), widget.render({ model, el: document.querySelector('#place') })].reverse();
   };
 }"""
-FRAME = "() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
+FRAME = """() => new Promise((done) => {
+  let frames = 0;
+  const step = () => (++frames < 2 || work.frame || work.draws.size || work.looks.size ? requestAnimationFrame(step) : done());
+  requestAnimationFrame(step);
+})"""  # until everything has been drawn
 
 
 class Bench:

@@ -134,3 +134,105 @@ def test_the_lab_has_columns_by_its_own_width(bench, width, columns):
         {"run": {"scan": 0, "time_us": 0, "state": "paused"}},
     )
     assert bench.page.locator(".lab").get_attribute("data-columns") == columns
+
+
+# -- the queue of work: what is drawn when
+
+PROBES = """({ slow, high }) => {
+  window.drawn = []; // [part, what it was told]
+  for (const name of ['one', 'two', 'three']) panels[name] = (place) => {
+    place.style.height = `${high}px`;
+    return {
+      apply(changes) {
+        drawn.push([name, { ...changes }]);
+        for (const began = performance.now(); performance.now() - began < slow; );
+      },
+    };
+  };
+}"""
+TELL = "(states) => { for (const state of states) model.tell({ n: 1, state: { one: state, two: state, three: state } }); }"
+FRAMES = """(count) => new Promise((done) => {
+  const step = () => (count-- > 0 ? requestAnimationFrame(step) : done(drawn.splice(0)));
+  step();
+})"""
+
+
+def probes(bench, slow=0, high=50):
+    """Three panels that write down what they draw, take their time for it in ms, and are so many px high."""
+    bench.js(PROBES, {"slow": slow, "high": high})
+    bench.show({"one": {}, "two": {}, "three": {}})
+    bench.js(FRAMES, 2)
+
+
+def test_two_updates_before_a_frame_are_drawn_once_together(bench):
+    probes(bench)
+    bench.js(TELL, [{"a": 1, "b": 1}, {"a": 2}])
+    assert bench.js(FRAMES, 4) == [[part, {"a": 2, "b": 1}] for part in ("one", "two", "three")]
+
+
+def test_a_frame_draws_no_more_panels_when_its_time_is_spent_and_the_next_one_goes_on(bench):
+    probes(bench, slow=4)
+    bench.js(TELL, [{"a": 1}])
+    assert [bench.js(FRAMES, 1) for _ in range(3)] == [[["one", {"a": 1}]], [["two", {"a": 1}]], [["three", {"a": 1}]]]
+
+
+def test_what_still_waits_is_drawn_with_what_has_come_since(bench):
+    probes(bench, slow=4)
+    seen = []
+    for value in (1, 2):
+        bench.js(TELL, [{"a": value}])
+        seen += bench.js(FRAMES, 1)
+    seen += bench.js(FRAMES, 6)
+    assert seen == [["one", {"a": 1}], ["two", {"a": 2}], ["three", {"a": 2}], ["one", {"a": 2}]]
+
+
+def test_a_panel_out_of_sight_is_drawn_a_few_times_a_second_and_to_the_end(bench):
+    probes(bench, high=1500)  # two of them begin below the window of 900 px
+    for value in range(20):
+        bench.js(TELL, [{"a": value}])
+        if value == 0:
+            bench.frame()
+            bench.js("() => drawn.splice(0)")
+            began = bench.js("() => performance.now()")
+        else:
+            bench.page.evaluate("() => new Promise((done) => requestAnimationFrame(done))")
+    lasted_ms = bench.js("() => performance.now()") - began
+    bench.frame()
+    drawn = bench.js("() => drawn")
+    counts = {name: sum(part == name for part, _ in drawn) for name in ("one", "two", "three")}
+    assert counts["one"] >= 15
+    assert counts["three"] <= lasted_ms / 250 + 1
+    assert {part: changes["a"] for part, changes in drawn} == {"one": 19, "two": 19, "three": 19}
+
+
+def test_what_looks_at_sizes_comes_before_what_draws(bench):
+    order = """() => new Promise((done) => {
+      const order = [];
+      work.draw(() => order.push('draw'), document.body);
+      work.look(() => order.push('look'));
+      work.look(() => work.look(() => done(order)));
+    })"""
+    assert bench.js(order) == ["look", "draw"]
+
+
+PROGRAM = "LD SM0\nTON T0 500\nLD SM1\nSET S0\nSTL S0\nOUT Y0\nLD X0\nSET S20\nSTL S20\nINC D0\nRET"
+
+
+def test_thirty_frames_after_an_update_every_panel_shows_it(bench, make_lab):
+    lab = make_lab(PROGRAM, devices=["D0"])
+    lab.session.scan(1)
+    bench.connect(lab)
+    lab.plc["X0"] = 1
+    for _ in range(3):
+        lab.session.scan(7)
+    for message in bench.said:
+        bench.js("(message) => model.tell(message)", message)
+    bench.js("() => { window.drawn = []; }")
+    bench.js(FRAMES, 30)
+    assert bench["scans"].inner_text() == "22"
+    assert bench["step-S20"].get_attribute("class") == "step active"
+    assert bench["step-S20"].get_attribute("aria-label") == "S20, active"
+    assert bench["lamp-Y0"].get_attribute("aria-label") == "Y0 off"
+    assert bench["T0"].inner_text() == str(lab.plc["T0"])
+    assert bench["device-D0"].locator(".value").inner_text() == str(lab.plc["D0"])
+    assert bench["ladder"].locator(".coil[data-device=Y0]").get_attribute("class") == "coil open"
