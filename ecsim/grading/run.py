@@ -87,27 +87,41 @@ class Trace:
     cut: bool = False  # it was ended before its time
     done: int = 0  # scans that were worked through, and not passed over
     _lanes: dict[str, Signal] = field(default_factory=dict, repr=False)
+    _groups: dict[int, list[tuple[int, tuple]]] = field(default_factory=dict, repr=False)
+    _signals: dict[str, Signal] = field(default_factory=dict, repr=False)  # of conditions
 
     def lane(self, name: str) -> Signal:
         """The changes of one lane: a device, a name of the wiring or a quantity of the plant."""
         lane = self.aliases.get(name, name)
         if lane not in self._lanes:
-            if lane == STEP and STEP in self.places:
-                group, named = self.places[STEP][0], self.steps
-                texts = [" ".join(step for step, on in zip(named, row[group], strict=False) if on) for row in self.rows]
-                self._lanes[lane] = compressed(zip(self.scans, texts, strict=True))
-            elif lane not in self.places:
+            if lane not in self.places:
                 known = ", ".join([*self.aliases, *(place for place in self.places if place not in self.aliases.values())])
                 raise EcsimError(f"there is no lane {name!r} in this exercise; there are {known}")
+            group, place = self.places[lane]
+            if lane == STEP:
+                changes = [
+                    (scan, " ".join(step for step, on in zip(self.steps, row, strict=False) if on)) for scan, row in self._group(group)
+                ]
             else:
-                group, place = self.places[lane]
-                values = [row[group][place] for row in self.rows]
-                self._lanes[lane] = compressed(zip(self.scans, values, strict=True))
+                changes = [(scan, row[place]) for scan, row in self._group(group)]
+            self._lanes[lane] = compressed(changes)
         return self._lanes[lane]
+
+    def _group(self, group: int) -> list[tuple[int, tuple]]:
+        """The changes of one part of the rows."""
+        if group not in self._groups:
+            found, last = [], None
+            for scan, row in zip(self.scans, self.rows, strict=True):
+                now = row[group]
+                if now is not last and now != last:
+                    found.append((scan, now))
+                    last = now
+            self._groups[group] = found
+        return self._groups[group]
 
     def signal(self, text: str) -> Signal:
         """A condition as a signal."""
-        return condition(text).over(self.lane, self.period_s)
+        return condition(text).over(self.lane, self.period_s, self._signals)
 
     def intervals(self, text: str) -> list[tuple[int, int]]:
         """Where a condition holds: (first scan, first scan behind it)."""
@@ -145,7 +159,7 @@ class Run:
         self._first = plc.scans
         self._generation = plc.memory.generation
         self._look_at(exercise)
-        self._conditions: dict[str, tuple[Callable, list[tuple[int, int]]]] = {}  # text -> what it is, where its lanes stand
+        self._awaited: dict[str, _Awaited] = {}  # by text
         self.scans: list[int] = []
         self.rows: list[tuple] = []
         self._last: tuple | None = None
@@ -154,7 +168,7 @@ class Run:
         self._releases: list[tuple[int, tuple[str, ...]]] = []
         self._journal: list[tuple[int, tuple]] = []  # scan -> where the script was before it
         self._until: int | None = None
-        self._rest = Rest(plc, plant)
+        self._rest = Rest(self.session)
         self._passed = 0
         self._quiet, self._ask_at = 0, QUIET  # scans without a change, and from how many on it is asked whether scans may be passed over
         plc.run()
@@ -164,23 +178,30 @@ class Run:
     def _look_at(self, exercise: "Exercise") -> None:
         """One getter for each list that lanes come from."""
         plc, lists = self.plc, self.plc.memory.lists
-        areas: dict[str, list[tuple[str, int]]] = {}
+        told = [name for name in self.session._registers if name in self.session.sensors.says]
+        groups: dict[tuple[str, bool], list[tuple[str, int]]] = {}
         for name in exercise.wiring:
             device, _ = plc.memory.parse(name)
-            areas.setdefault(device.area, []).append((name, device.number))
+            groups.setdefault((device.area, name in told), []).append((name, device.number))
         steps = plc.in_use(("S",))
         self.steps = [str(step) for step in steps]
         self.places: dict[str, tuple[int, int]] = {}
         self._looks: list[tuple[Callable, Any]] = []
-        for area, devices in areas.items():
+        self._quantities: list[int] = []  # the group of the machine's quantities
+        self._moving: list[int] = []  # what may change while only the machine goes on: those, and what it tells in registers
+        for (area, by_machine), devices in groups.items():
             self.places |= {name: (len(self._looks), place) for place, (name, _) in enumerate(devices)}
+            self._moving += [len(self._looks)] * by_machine
             self._looks.append((_getter([number for _, number in devices]), lists[area]))
         if self.plant is not None and exercise.quantities:
             self.places |= {name: (len(self._looks), place) for place, name in enumerate(exercise.quantities)}
+            self._quantities = [len(self._looks)]
             self._looks.append((_attributes(exercise.quantities), self.plant))
         if steps:
             self.places[STEP] = len(self._looks), 0
             self._looks.append((_getter([step.number for step in steps]), lists["S"]))
+        self._moving += self._quantities
+        self._apart = _getter([group for group in range(len(self._looks)) if group not in self._moving])
 
     # -- the run ------------------------------------------------------------------------------------------------
 
@@ -203,31 +224,68 @@ class Run:
         done = self.plc.scans - self._first
         self._quiet += 1
         if now != self._last:
-            self._last = now
-            self._quiet, self._ask_at = 0, QUIET
-            self.scans.append(done - 1)
-            self.rows.append(now)
-            if self._due is None and self._position < len(self._script) and self._holds(self._script[self._position].when):
-                self._due = done + self._scans(self._script[self._position].after)
-            if self._until is None and self.scenario.until is not None and self._holds(self.scenario.until):
-                self._until = done + self._scans(self.scenario.tail)
-                self._stop_at = min(self._stop_at, self._until)
+            if self._last is None or self._apart(now) != self._apart(self._last):
+                self._quiet, self._ask_at = 0, QUIET
+            self._note(done, now)
         if done == self._due or (self._releases and done >= self._releases[0][0]):
             self._act(done)
 
+    def _note(self, done: int, now: tuple) -> None:
+        """Something has changed in the last of so many scans: perhaps what the operator waits for, or what ends the run."""
+        self._last = now
+        self.scans.append(done - 1)
+        self.rows.append(now)
+        if self._due is None and self._position < len(self._script) and self._holds(self._script[self._position].when):
+            self._due = done + self._scans(self._script[self._position].after)
+        if self._until is None and self.scenario.until is not None and self._holds(self.scenario.until):
+            self._until = done + self._scans(self.scenario.tail)
+            self._stop_at = min(self._stop_at, self._until)
+
     def _pass_over(self) -> None:
-        """Nothing that is noted has changed for some scans: perhaps nothing will for many more."""
+        """The program has done nothing for some scans: perhaps it will not for many more."""
         done = self.plc.scans - self._first
         ends = [self._stop_at, *([self._due] if self._due is not None else []), *([self._releases[0][0]] if self._releases else [])]
         count = self._rest.scans(min(ends) - done - 1)
-        if count:
-            self._rest.pass_over(count)
-            self._passed += count
+        still = min(count, self._rest.still) if count else 0
+        if still:
+            self._rest.pass_over(still)
+            self._passed += still
             if self.plant is not None:
-                self.plant.step(count * self.period_s, self.session._outputs)
+                self.plant.step(still * self.period_s, self.session._outputs)
+            self._quiet = 0
+        elif count:
+            self._glide(count)
             self._quiet = 0
         elif self._quiet > self._ask_at:  # asked twice, one scan after the other
             self._ask_at = 2 * self._quiet
+
+    def _glide(self, most: int) -> None:
+        """The machine goes on alone for so many scans, or until it says what the program looks at, or the operator has something to do."""
+        session, first, last = self.session, self.plc.scans - self._first, self._last
+        goes_on, step, outputs, seconds = self._rest.listener(), self.plant.step, session._outputs, self.period_s
+        done, said, waits = first, session._last_sensors, (self._due, self._stop_at)
+        while done < first + most and waits == (self._due, self._stop_at):
+            sensors, before = step(seconds, outputs), said
+            done, said = done + 1, sensors
+            if said is not before and not goes_on(said):
+                break
+            if said is before and not (done - first) % QUIET and self._rest.still:
+                break
+            now = last
+            for group in self._quantities if said is before else self._moving:
+                look, source = self._looks[group]
+                found = look(source)
+                if found != now[group]:
+                    now = (*now[:group], found, *now[group + 1 :])
+            if now is not last:
+                self._note(done, now)
+                last = now
+        # The last of these scans is done by the PLC as well: its timers have counted when something changes.
+        self._rest.pass_over(done - 1 - first)
+        self.plc.turn()
+        before, session._last_sensors = session._last_sensors, said
+        session._enter(said, self.plc.clock[0], before)
+        self.sample()
 
     def _scans(self, seconds: float) -> int:
         return round(seconds / self.period_s)
@@ -246,11 +304,11 @@ class Run:
         """Whether a condition over lanes holds now."""
         if text is None or self._last is None:
             return False
-        if text not in self._conditions:
+        if text not in self._awaited:
             asked: Condition = condition(text)
-            self._conditions[text] = asked.expression, [self._place(name) for name in asked.names]
-        (expression, places), last = self._conditions[text], self._last
-        return bool(expression(*[last[group][place] for group, place in places]))
+            places = [self._place(name) for name in asked.names]
+            self._awaited[text] = _Awaited(asked.expression, places, _getter([group for group, _ in places]))
+        return self._awaited[text].holds(self._last)
 
     def _place(self, name: str) -> tuple[int, int]:
         """Where a lane stands in a row."""
@@ -292,8 +350,26 @@ class Run:
         self._last = self.rows[-1] if self.rows else None
 
 
+@dataclass
+class _Awaited:
+    """A condition over lanes that is asked for again and again, mostly without a change."""
+
+    expression: Callable[..., Any]
+    places: list[tuple[int, int]]  # of its lanes in a row
+    groups: Callable[[tuple], tuple]
+    seen: tuple | None = None
+    held: bool = False
+
+    def holds(self, row: tuple) -> bool:
+        """Whether it holds in a row."""
+        seen = self.groups(row)
+        if seen != self.seen:
+            self.seen, self.held = seen, bool(self.expression(*[row[group][place] for group, place in self.places]))
+        return self.held
+
+
 def _getter(numbers: list[int]) -> Callable[[Sequence], tuple]:
-    return itemgetter(*numbers, numbers[0])
+    return itemgetter(*numbers, numbers[0]) if numbers else lambda values: ()
 
 
 def _attributes(names: Sequence[str]) -> Callable[[Any], tuple]:

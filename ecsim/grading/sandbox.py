@@ -6,6 +6,7 @@ Where a system has no fork (Windows) the judge grades by itself and is started a
 """
 
 import contextlib
+import gc
 import json
 import os
 import signal
@@ -21,6 +22,8 @@ from ..project import SETTINGS, Project
 from .exercise import Exercise, find_exercise
 from .grade import grade, untried
 from .report import Report
+
+GARBAGE = 20_000  # a run keeps tens of thousands of values: to look through them every 700 costs a tenth of the time
 
 
 @dataclass(frozen=True)
@@ -148,6 +151,9 @@ def serve(place: str) -> None:
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # what anything prints does not mix with the answers
     exercise = find_exercise(place)
+    gc.collect()
+    gc.freeze()  # what is loaded stays: the children share its pages, and need not look through it
+    gc.set_threshold(GARBAGE)
     for line in sys.stdin:
         request = json.loads(line)
         answer = _in_a_child(exercise, request) if hasattr(os, "fork") else json.dumps(_graded(exercise, request))

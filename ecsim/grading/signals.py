@@ -36,12 +36,19 @@ def combine(function: Callable, signals: Sequence[Signal]) -> Signal:
     """function(values) of several signals at each of their changes."""
     if not signals:
         return [(0, function())]
-    if len(signals) == 1:
-        return compressed([(scan, function(value)) for scan, value in signals[0]])
-    changes = sorted([(scan, place, value) for place, signal in enumerate(signals) for scan, value in signal], key=_when)
-    values: list[Any] = [0] * len(signals)
     found: Signal = []
-    last, now = object(), changes[0][0]
+    last: Any = object()
+    if len(signals) == 1:
+        for scan, value in signals[0]:
+            result = function(value)
+            if result != last:
+                found.append((scan, result))
+                last = result
+        return found
+    # No two of them have both scan and place in common: the values are not compared.
+    changes = sorted([(scan, place, value) for place, signal in enumerate(signals) for scan, value in signal])
+    values: list[Any] = [0] * len(signals)
+    now = changes[0][0]
     for scan, place, value in changes:
         if scan != now:
             result = function(*values)
@@ -54,10 +61,6 @@ def combine(function: Callable, signals: Sequence[Signal]) -> Signal:
     if result != last:
         found.append((now, result))
     return found
-
-
-def _when(change: tuple[int, int, Any]) -> tuple[int, int]:
-    return change[:2]
 
 
 def intervals(signal: Signal, end: int) -> list[tuple[int, int]]:
@@ -167,13 +170,19 @@ class Condition:
                 found[name] = None
         return tuple(found)
 
-    def over(self, lane: Callable[[str], Signal], period_s: float) -> Signal:
-        """The condition as a signal; `lane` gives the signal of a lane, a scan takes `period_s`."""
+    def over(self, lane: Callable[[str], Signal], period_s: float, known: dict[str, Signal] | None = None) -> Signal:
+        """The condition as a signal; `lane` gives the signal of a lane, a scan takes `period_s`. `known` keeps what was made before."""
+        known = {} if known is None else known
+        if self.text not in known:
+            known[self.text] = self._made(lane, period_s, known)
+        return known[self.text]
+
+    def _made(self, lane: Callable[[str], Signal], period_s: float, known: dict[str, Signal]) -> Signal:
         signals = []
         for name in self.names:
             if name in self.parts:
                 function, inner, seconds = self.parts[name]
-                made = [condition.over(lane, period_s) for condition in inner]
+                made = [condition.over(lane, period_s, known) for condition in inner]
                 do, _, timed = FUNCTIONS[function]
                 signals.append(do(*made, *([round(seconds / period_s)] if timed else [])))
             else:

@@ -7,6 +7,7 @@ weight, D2 and M2 are what the screen says.
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import inf
+from operator import add
 from typing import ClassVar, NamedTuple
 
 from ..plant import Machine, Point, remaining
@@ -100,6 +101,7 @@ class Mixer(Machine):
     _feeds: bool = field(default=False, init=False, repr=False)  # whether something comes in
     _flows: tuple[float, ...] = field(default=(0.0,) * 5, init=False, repr=False)  # kg/s of the feeds and the drain
     _bends: tuple[float, ...] = field(default=(0.0,) * 5, init=False, repr=False)  # and how they change, kg/s²
+    _share: ClassVar[tuple] = (None, 0.0)  # what the last step with these flows brought
 
     def __post_init__(self):
         if len(self.valve_s) != 5 or min(self.valve_s) <= 0:
@@ -115,7 +117,10 @@ class Mixer(Machine):
     def still(self) -> float:
         """For how many seconds nothing changes that a sensor tells: valves and weight stand, whatever runs through and turns."""
         flows = self._flows
-        stands = not any(flows) or (not self.weight and sum(flows[:4]) <= flows[4])
+        stands = not any(flows)
+        if not stands:
+            net = sum(flows[:4]) - flows[4]
+            stands = (not self.weight and net <= 0) or (self.weight == FULL and net >= 0)
         return self._steady_s if stands and not self._moves else 0.0
 
     def step(self, seconds: float, outputs: Mapping[str, int]) -> dict[str, int]:
@@ -156,20 +161,17 @@ class Mixer(Machine):
             self._stir(seconds)
 
     def _flow(self, seconds):
-        flows, bends = self._flows, self._bends
-        half = seconds * seconds / 2
-        if self._feeds:
-            added = [flow * seconds + bend * half for flow, bend in zip(flows, bends, strict=True)]
-            self.dosed = tuple([dosed + amount for dosed, amount in zip(self.dosed, added, strict=False)])
+        flows = self._flows
+        if self._share[0] is not flows or self._share[1] != seconds:
+            self._share = self._shared(seconds)
+        _, _, added, total, least = self._share
+        if added:
+            self.dosed = tuple(map(add, self.dosed, added))
             if added[1] or added[2] or added[3]:
                 self.stirred_s = 0.0
-            if added[0] and (flows[4] or bends[4]):
+            if added[0] and (flows[4] or self._bends[4]):
                 self.washed_s += seconds
-        net, bend = sum(flows[:4]) - flows[4], sum(bends[:4]) - bends[4]
-        total = net * seconds + bend * half
-        turn = -net / bend if bend > 0 else 0.0  # where the weight is least, if it falls and rises again
-        least = net * turn / 2 if 0 < turn < seconds else min(0.0, total)
-        weight = max(self.weight + total, total - least)  # it does not fall below 0
+        weight = max(self.weight + total, least)  # it does not fall below 0
         if weight > FULL:
             if not self.spilt:
                 self.incidents += (Incident(round(self.seconds, 3), self.finished + 1, "runs over"),)
@@ -178,7 +180,7 @@ class Mixer(Machine):
         self.weight = weight or 0.0
         if self._moves:
             self.places = tuple([place + rate * seconds for place, rate in zip(self.places, self._rates, strict=False)])
-            self._flows = tuple([flow + bend * seconds for flow, bend in zip(flows, bends, strict=True)])
+            self._flows = tuple([flow + bend * seconds for flow, bend in zip(flows, self._bends, strict=True)])
         if weight > BATCH:
             self._holds_batch = True
         elif weight < REST:
@@ -186,6 +188,17 @@ class Mixer(Machine):
                 self._finish()
             elif not weight:
                 self.dosed = (0.0,) * 4
+
+    def _shared(self, seconds):
+        """What so many seconds bring with the flows as they are: these, the seconds, kg of each feed, in all, and at the least."""
+        flows, bends = self._flows, self._bends
+        half = seconds * seconds / 2
+        added = [flow * seconds + bend * half for flow, bend in zip(flows, bends, strict=True)] if self._feeds else ()
+        net, bend = sum(flows[:4]) - flows[4], sum(bends[:4]) - bends[4]
+        total = net * seconds + bend * half
+        turn = -net / bend if bend > 0 else 0.0  # where the weight is least, if it falls and rises again
+        least = net * turn / 2 if 0 < turn < seconds else min(0.0, total)
+        return flows, seconds, added, total, total - least
 
     def _stir(self, seconds):
         rate = self._rates[5]
