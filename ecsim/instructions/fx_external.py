@@ -33,7 +33,7 @@ def mtr(flow, s, target, n, machine, now, state):
     if not flow:
         return [False] * n, False, False
     row, since, put_out = state or (0, now, False)
-    done, waited = False, state is not None
+    done, waited = False, bool(state)
     if put_out and now - since >= ROW_US:
         apart = 8 if target.area == "Y" else 10
         first = target.number + apart * row
@@ -134,21 +134,21 @@ def dsw(flow, s, d2, n, now, state):
     """Read N sets of four digit switches at the inputs from S on into D2 and D2+1, a digit in each tenth of a second.
 
     The outputs from D1 on lead the digits, the units first; each answers with its digit in four bits, the lowest first.
-    M8029 tells of the fourth one.
+    M8029 tells of the fourth one. As with MTR an output is ON for two scans at least.
     """
     if not flow:
         return [False] * 4, d2, False, False
-    digit, since, numbers = state or (0, now, (0,) * n)
-    done = False
-    if state and now - since >= DIGIT_US:
+    digit, since, numbers, put_out = state or (0, now, (0,) * n, False)
+    done, waited = False, bool(state)
+    if put_out and now - since >= DIGIT_US:
         found = [sum(bit << place for place, bit in enumerate(s[4 * each : 4 * each + 4])) for each in range(n)]
         if max(found) > 9:
             raise Fault(OPERAND)
         numbers = tuple(number + 10**digit * each for number, each in zip(numbers, found, strict=True))
-        digit, since = digit + 1, now
+        digit, since, waited = digit + 1, now, False
         if digit == 4:
             d2, digit, numbers, done = list(numbers), 0, (0,) * n, True
-    return [each == digit for each in range(4)], d2, done, (digit, since, numbers)
+    return [each == digit for each in range(4)], d2, done, (digit, since, numbers, waited)
 
 
 @value("FX:SEGD", f"S:INT D:WORD[{_NUMBER}] -> D", steps=5, section="FNC 73", models=H2U)
