@@ -13,7 +13,7 @@ from ..models import By, Model, get_model
 from ..values import BOOL, TYPES
 from .hints import elsewhere
 from .inputs import check_inputs
-from .operands import Refused, Resolver
+from .operands import Misplaced, Refused, Resolver
 from .program import Instruction, Network, Program, Region, Unit, Variable
 from .reader import RawUnit, RawVariable, Source, Statement, read, shown
 from .structure import find_structure
@@ -212,8 +212,11 @@ class _Assembler:
     def _unit_names(self) -> None:
         seen: dict[str, Unit] = {}
         events: dict[int, Unit] = {}
+        timers: dict[int, Unit] = {}  # by the relay that each timer has; one gives one period
         for unit in self.units:
             first = seen.setdefault(unit.name.upper(), unit)
+            if first is not unit and self.model.syntax.pointers:  # that label has been told twice already
+                continue
             if first is not unit:
                 self.source.report(
                     unit.line, f"the name {shown(unit.name)} stands twice", f"it stands in {self.source.where(first.line)} already", word=1
@@ -227,6 +230,16 @@ class _Assembler:
                         f"{other.name} in {self.source.where(other.line)} serves it already",
                         "9.2",
                         word=3,
+                    )
+            if unit.event in self.model.timed_ms:
+                other = timers.setdefault(self.model.events.get(unit.event, unit.event), unit)
+                if other is not unit:
+                    self.source.report(
+                        unit.line,
+                        f"{unit.name} and {other.name} belong to one timer",
+                        f"{other.name} in {self.source.where(other.line)} has it already; take another timer's label",
+                        "9.2",
+                        word=0,
                     )
         count = sum(unit.kind == "SUBROUTINE" for unit in self.units)
         if count > self.model.limits["subroutines"]:
@@ -256,11 +269,15 @@ class _Assembler:
 
     def _definition(self, statement: Statement, unit: Unit) -> Definition | None:
         """The row that a statement's name stands for, with its first operand where that decides."""
-        name = statement.mnemonic
+        meant = self._meant(statement.mnemonic, statement.operands, unit)
+        return TABLE[meant[0]] if meant else self.definitions.get(statement.mnemonic)
+
+    def _meant(self, name: str, words: tuple[str, ...], unit: Unit) -> tuple[str, ...]:
+        """What a name may still stand for behind these operands, the usual first; nothing for one that stands for the same always."""
         choice = self.choices.get(name.removesuffix(self.model.pulse_suffix) if name in self.at_rise else name)
-        if choice is None:
-            return self.definitions.get(statement.mnemonic)
-        for word in statement.operands:
+        for word in words:
+            if not isinstance(choice, By):
+                break
             try:
                 operand = self.resolver.resolve(word, unit.variables)
             except Refused:
@@ -271,9 +288,7 @@ class _Assembler:
                 choice = choice.of(f"Kn{operand.area}" if isinstance(operand, Bits) else operand.area, operand.number)
             else:
                 choice = choice.usual
-            if isinstance(choice, str):
-                return TABLE[choice]
-        return TABLE[choice.keys[0]]
+        return choice.keys if isinstance(choice, By) else (choice,) if choice else ()
 
     def _unknown(self, statement: Statement) -> None:
         written = statement.mnemonic
@@ -307,15 +322,24 @@ class _Assembler:
             try:
                 operands.append(self.resolver.operand(spec, word, unit.variables))
             except Refused as refused:
-                self.source.report(statement.line, refused.message, refused.hint, refused.section or section, word=place)
+                hint = self._open(spec, statement, place, unit) if isinstance(refused, Misplaced) else refused.hint
+                self.source.report(statement.line, refused.message, hint, refused.section or section, word=place)
         if len(operands) < len(specs) or not self._spans_fit(definition, operands, statement):
             return None
         if definition.check:
-            wrong = definition.check(*(operand.value if isinstance(operand, Constant) else operand for operand in operands))
+            given = tuple(operand.value if isinstance(operand, Constant) else operand for operand in operands)
+            first = (self.model,) if definition.check.__code__.co_varnames[0] == "model" else ()
+            wrong = definition.check(*first, *given)
             if wrong:
                 self.source.report(statement.line, wrong, "", section)
                 return None
         return tuple(operands)
+
+    def _open(self, spec: OperandSpec, statement: Statement, place: int, unit: Unit) -> str:
+        """What may stand there in any form that the operands before it leave open."""
+        forms = [TABLE[key].operands for key in self._meant(statement.mnemonic, statement.operands[: place - 1], unit)]
+        others = [form[place - 1] for form in forms if len(form) == len(statement.operands)]
+        return self.resolver.may_be(spec, *others)
 
     def _spans_fit(self, definition: Definition, operands: list, statement: Statement) -> bool:
         """Whether no span whose length is known already reaches beyond the last device; others are held against it when they are executed."""

@@ -19,6 +19,10 @@ class Refused(Exception):
         self.message, self.hint, self.section = message, hint, section
 
 
+class Misplaced(Refused):
+    """An operand of a kind that does not belong there; `hint` says which do."""
+
+
 class Resolver:
     """Resolves the words of one program for its model, with its global variables."""
 
@@ -170,21 +174,27 @@ class Resolver:
     def _area(self, spec: OperandSpec, area: str, text: str) -> None:
         if area not in self.areas(spec):
             what = "is read only" if spec.written and area in ("KnX", "X") else f"cannot be {spec.name}"
-            raise Refused(f"{shown(text)} {what}", f"{spec.name} ({spec.type.name}) may be {self._allowed(spec)}")
+            raise Misplaced(f"{shown(text)} {what}", self.may_be(spec))
 
-    def _allowed(self, spec: OperandSpec) -> str:
+    def may_be(self, *specs: OperandSpec) -> str:
+        """What may stand for an operand, in any of the forms that are open."""
+        return f"{specs[0].name} ({specs[0].type.name}) may be {self._allowed(*specs)}"
+
+    def _allowed(self, *specs: OperandSpec) -> str:
         """The areas of an operand that the model has, in words."""
+        words = list(dict.fromkeys(word for spec in specs for word in self._kinds(spec)))
+        return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} or {words[-1]}"
+
+    def _kinds(self, spec: OperandSpec) -> list[str]:
         pointer = self.model.syntax.pointers.get(spec.kind)
         if pointer:
-            return f"a pointer, {pointer}{spec.range[0] if spec.range else 1}"
-        words = ["a constant" if area == "const" else area for area in self.areas(spec)]
-        return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} or {words[-1]}"
+            return [f"a pointer, {pointer}{spec.range[0] if spec.range else 1}"]
+        return ["a constant" if area == "const" else area for area in self.areas(spec)]
 
     def _constant(self, spec: OperandSpec, constant: Constant, text: str) -> None:
         if "const" not in spec.areas:
-            raise Refused(
-                f"the constant {shown(text)} cannot be {spec.name}", f"{spec.name} ({spec.type.name}) may be {self._allowed(spec)}"
-            )
+            what = "pointer" if isinstance(constant, Pointer) else "constant"
+            raise Misplaced(f"the {what} {shown(text)} cannot be {spec.name}", self.may_be(spec))
         value = constant.value
         pointer = constant.letter if isinstance(constant, Pointer) else ""
         if pointer != self.model.syntax.pointers.get(spec.kind, ""):

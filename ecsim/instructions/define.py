@@ -47,7 +47,7 @@ class Definition:
     bus: bool = False  # stands on the left bus, without a flow before it
     rising: bool = False  # executed only in the scan in which its flow rises
     faults: tuple[int, ...] = ()
-    check: Callable | None = None  # (values of the constant operands) -> what is wrong with them, or None
+    check: Callable | None = None  # (values of the operands; the `model` first, where it takes one) -> what is wrong with them, or None
     counted: str | None = None  # which of the model's limits a program's instructions of this kind count towards
     pulsed: bool | None = None  # whether it has a form for the rise of its flow, where a family has such forms; None: as usual
     occupies: Callable | None = None  # (model, operands) -> the numbers of the inputs X0 to X7 that it needs for itself (8.5)

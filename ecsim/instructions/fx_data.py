@@ -5,9 +5,10 @@ from .bits import dbits
 from .define import FX, H2U, always, command, value
 
 
-def _one_kind(first, last) -> str | None:
+def _one_kind(model, first, last) -> str | None:
     """What is wrong with the ends of a run."""
-    return f"D1 = {first} and D2 = {last} are not of one kind" if first.area != last.area else None
+    kinds = {(each.area, each.area == "C" and each.number >= model.wide_counters) for each in (first, last)}
+    return f"D1 = {first} and D2 = {last} are not of one kind" if len(kinds) > 1 else None
 
 
 _RUN = "*{max(d2-d1,0)+1}"

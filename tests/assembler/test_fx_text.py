@@ -107,12 +107,29 @@ def test_an_empty_program_and_one_that_only_ends():
         ("LD X0\nMC N1 M5\nLD X1\nMC N0 M6\nMCR N0\nMCR N1", 4, "MC N0 M6 stands inside MC N1 M5", "levels go up from N0 on"),
         ("OUT Y0", 1, "OUT Y0 has no power flow", "begin the rung with a contact, for example LD M8000"),
         ("LD X0\nMOV D0 X5", 2, "'X5' is read only", "D (INT) may be KnY, KnM, KnS, D, C, T, V or Z"),
+        ("LD X0\nOUT T0 C0", 2, "'C0' cannot be S", "S (INT) may be a constant or D"),
+        ("LD X0\nOUT T250 X0", 2, "'X0' cannot be S", "S (INT) may be a constant or D"),
+        ("LD X0\nOUT X0", 2, "'X0' is read only", "D (BOOL) may be Y, M, S, C or T"),
+        ("LD X0\nDHSCS K3 C235 P1", 2, "the pointer 'P1' cannot be D", "D (BOOL) may be Y, M, S or a pointer, I1"),
+        ("LD X0\nPRUN K2X0 K2Y0", 2, "'K2Y0' cannot be D", "D (WORD) may be KnM"),
+        ("LD X0\nZRST C199 C200", 2, "D1 = C199 and D2 = C200 are not of one kind", ""),
+        ("FEND\nI610\nLD X0\nINC D0\nIRET\nI620\nLD X0\nINC D0\nIRET", 6, "I620 and I610 belong to one timer", "I610 in line 2 has it"),
     ],
 )
 def test_what_is_refused_says_what_helps(text, line, message, hint):
     told = [problem for problem in found(text) if problem[0] == line and problem[1].startswith(message)]
     assert told, found(text)
     assert told[0][2].startswith(hint) or hint in told[0][2], told
+
+
+def test_each_timer_has_a_routine_of_its_own():
+    routines = "".join(f"I{timer}10\nLD M8000\nINC D{timer}\nIRET\n" for timer in (6, 7, 8))
+    assert [unit.event for unit in assemble(f"FEND\n{routines}", "H2U").units] == [None, 610, 710, 810]
+
+
+@pytest.mark.parametrize("text", ["FEND\nP1\nSRET\nP1\nSRET", "FEND\nI610\nIRET\nI610\nIRET", "FEND\nI1\nIRET\nI001\nIRET"])
+def test_a_label_that_stands_twice_is_told_once(text):
+    assert [problem[1].split()[1:] for problem in found(text)] == [["stands", "twice"]]
 
 
 @pytest.mark.parametrize(
