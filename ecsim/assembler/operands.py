@@ -11,6 +11,9 @@ from .program import Variable
 from .reader import shown
 
 
+CLOCK_PARTS = 7  # registers of date, time and weekday
+
+
 class Refused(Exception):
     """An operand does not fit; the message says why, `hint` what would, `section` where the manual says so."""
 
@@ -277,10 +280,11 @@ class Resolver:
 
     def _writable(self, device: Device | Bits, length: int, text: str) -> None:
         model = self.model
-        fixed = model.read_only(device.area)
+        fixed, first = model.read_only(device.area), model.registers["clock"]
         if any(number in fixed for number in range(device.number, device.number + length)):
+            clock = device.area == model.special_words and 0 <= device.number - first < CLOCK_PARTS
             raise Refused(
                 f"{text} is read only",
-                "the system writes it, programs only read it",
+                "TWR sets the clock" if clock else "the system writes it, programs only read it",
                 "3.1.9" if device.area == model.special_bits else "3.1.10",
             )

@@ -107,6 +107,8 @@ def test_an_empty_program_and_one_that_only_ends():
         ("LD X0\nMC N1 M5\nLD X1\nMC N0 M6\nMCR N0\nMCR N1", 4, "MC N0 M6 stands inside MC N1 M5", "levels go up from N0 on"),
         ("OUT Y0", 1, "OUT Y0 has no power flow", "begin the rung with a contact, for example LD M8000"),
         ("LD X0\nMOV D0 X5", 2, "'X5' is read only", "D (INT) may be KnY, KnM, KnS, D, C, T, V or Z"),
+        ("LD X0\nMOV K5 D8013", 2, "D8013 is read only", "TWR sets the clock"),
+        ("LD X0\nMOV K5 D8010", 2, "D8010 is read only", "the system writes it"),
         ("LD X0\nOUT T0 C0", 2, "'C0' cannot be S", "S (INT) may be a constant or D"),
         ("LD X0\nOUT T250 X0", 2, "'X0' cannot be S", "S (INT) may be a constant or D"),
         ("LD X0\nOUT X0", 2, "'X0' is read only", "D (BOOL) may be Y, M, S, C or T"),
