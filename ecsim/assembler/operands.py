@@ -10,7 +10,6 @@ from .hints import special_device
 from .program import Variable
 from .reader import shown
 
-
 CLOCK_PARTS = 7  # registers of date, time and weekday
 
 
@@ -285,6 +284,6 @@ class Resolver:
             clock = device.area == model.special_words and 0 <= device.number - first < CLOCK_PARTS
             raise Refused(
                 f"{text} is read only",
-                "TWR sets the clock" if clock else "the system writes it, programs only read it",
+                "the system writes it, programs only read it" + ("; TWR sets the clock" if clock else ""),
                 "3.1.9" if device.area == model.special_bits else "3.1.10",
             )
