@@ -5,7 +5,7 @@ from functools import cache
 from html import escape
 from importlib.resources import files
 
-from ..views.svg import look
+from ..views.svg import look, tokens
 from .report import FAILED, PASSED, Report, Verdict, duration
 
 CHECK = '<svg class="ico" width="14" height="14" viewBox="0 0 16 16" aria-hidden="true"><path d="M3 8.5l3.5 3.5L13 4.5"/></svg>'
@@ -77,10 +77,18 @@ def _rule(verdict: Verdict, number: int, actions: Callable[[Verdict], str]) -> s
     )
 
 
+@cache
+def dark() -> str:
+    """The colours of the dark theme on a page by itself, for those whose system asks for it. Paper stays white."""
+    light = tokens()
+    colours = "".join(f"{name}: {value}; " for name, value in tokens("dark").items() if value != light[name])
+    return f"@media screen and (prefers-color-scheme: dark) and (forced-colors: none) {{ .ec.report-page, .ec.report-page .ec {{ color-scheme: dark; {colours}}} }}\n"
+
+
 def page(title: str, body: str) -> str:
-    """A whole HTML file."""
+    """A whole HTML file, dark where its reader's system is."""
     return (
         f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
-        f'<meta name="viewport" content="width=device-width, initial-scale=1"><style>{style()}</style></head>'
+        f'<meta name="viewport" content="width=device-width, initial-scale=1"><style>{style()}{dark()}</style></head>'
         f'<body class="ec report-page">{body}</body></html>\n'
     )

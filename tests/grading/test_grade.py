@@ -14,6 +14,7 @@ from ecsim.grading.chart import ticks
 from ecsim.grading.choices import usual
 from ecsim.grading.grade import Stage
 from ecsim.grading.page import page, panel
+from ecsim.grading.page import style as style_of_the_report
 
 GATE = "gate_stays_down"
 
@@ -212,6 +213,16 @@ def test_the_page_is_well_formed_and_marks_the_lanes(wrong):
     assert len(ids) == len(set(ids))
     assert "<style>" in wrong._repr_html_()
     assert page("Title", html).startswith("<!doctype html>")
+
+
+def test_a_page_by_itself_follows_its_reader_s_system():
+    style = page("Title", "").partition("<style>")[2].partition("</style>")[0]
+    before, found, dark = style.partition("@media screen and (prefers-color-scheme: dark)")
+    assert found
+    assert "--ec-paper: #111111;" in dark  # a literal: there is no JupyterLab around it
+    assert "--ec-on: #43dd9a;" in dark
+    assert "--ec-radius" not in dark  # colours alone
+    assert before == style_of_the_report()
 
 
 def test_words_of_a_program_cannot_break_the_page(conveyor):
