@@ -57,10 +57,16 @@ def _grade(options: argparse.Namespace) -> int:
         return _grade_class(exercise, options, limits)
     if options.report or options.scheduler or options.workers:
         raise EcsimError("--report, --scheduler and --workers are for a folder of submissions")
-    if options.hint and sys.stderr.isatty():
-        print("grading; the search for a hint may take 20 s", file=sys.stderr)
-    with Judge(place_of(exercise), options.model, limits, options.hint) as judge:
+    told: list[int] = []
+
+    def searching(done: int, of: int) -> None:
+        told.append(done)
+        _bar(100 * done // max(of, 1), 100, "looking for a hint")
+
+    with Judge(place_of(exercise), options.model, limits, options.hint, searching if sys.stderr.isatty() else None) as judge:
         report = judge.grade(Submission.read(options.answer))
+    if told:
+        print(file=sys.stderr)
     if options.html is not None:
         options.html.write_text(page(report.title, panel(report, styled=False)), encoding="utf-8")
     print(report.as_json() if options.json else report)

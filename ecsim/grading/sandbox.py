@@ -13,6 +13,7 @@ import signal
 import subprocess
 import sys
 import threading
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -80,10 +81,21 @@ def failed_report(exercise: Exercise, name: str, model: str | None, reason: str)
 
 
 class Judge:
-    """Grades submissions to one exercise in a process beside this one. Used by one thread at a time; `close` ends it."""
+    """Grades submissions to one exercise in a process beside this one. Used by one thread at a time; `close` ends it.
 
-    def __init__(self, exercise: "str | Path", model: str | None = None, limits: Limits | None = None, hints: bool = False):
+    `progress(done, of)` is called while a hint is looked for.
+    """
+
+    def __init__(
+        self,
+        exercise: "str | Path",
+        model: str | None = None,
+        limits: Limits | None = None,
+        hints: bool = False,
+        progress: Callable[[int, int], Any] | None = None,
+    ):
         self.place, self.model, self.limits, self.hints = str(exercise), model, limits or Limits(), hints
+        self.progress = progress
         self.exercise = find_exercise(exercise)
         self._process: subprocess.Popen | None = None
 
@@ -107,8 +119,10 @@ class Judge:
         try:
             process.stdin.write(line + "\n")
             process.stdin.flush()
-            answer = process.stdout.readline()
-            return json.loads(answer)
+            while "progress" in (answer := json.loads(process.stdout.readline())):
+                if self.progress is not None:
+                    self.progress(*answer["progress"])
+            return answer
         except (OSError, ValueError):
             self.close()
             return {"reason": "Grading came to no end: the program took too long or too much memory."}
@@ -147,28 +161,39 @@ class Judge:
 
 
 def serve(place: str) -> None:
-    """Answer requests, one JSON a line, until the input ends."""
+    """Answer requests, one JSON a line, until the input ends. Lines of progress may come before an answer."""
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # what anything prints does not mix with the answers
     exercise = find_exercise(place)
     gc.collect()
     gc.freeze()  # what is loaded stays: the children share its pages, and need not look through it
     gc.set_threshold(GARBAGE)
-    for line in sys.stdin:
-        request = json.loads(line)
-        answer = _in_a_child(exercise, request) if hasattr(os, "fork") else json.dumps(_graded(exercise, request))
-        answers.write(answer + "\n")
+
+    def tell(line: str) -> None:
+        answers.write(line + "\n")
         answers.flush()
 
+    for line in sys.stdin:
+        request = json.loads(line)
+        tell(_in_a_child(exercise, request, tell) if hasattr(os, "fork") else json.dumps(_graded(exercise, request, tell)))
 
-def _graded(exercise: Exercise, request: dict[str, Any]) -> dict[str, Any]:
-    """The report as data, or the reason why there is none."""
+
+def _graded(exercise: Exercise, request: dict[str, Any], tell: Callable[[str], Any]) -> dict[str, Any]:
+    """The report as data, or the reason why there is none. How far the search for a hint is goes to `tell` as a line, at each percent."""
+    told = -1
+
+    def progress(done: int, of: int) -> None:
+        nonlocal told
+        if 100 * done // max(of, 1) > told:
+            told = 100 * done // max(of, 1)
+            tell(json.dumps({"progress": [done, of]}))
+
     try:
         report = grade(exercise, Project.spelled(request["files"], request["name"]), request["model"])
         if request["hints"]:
             from .hints import hint
 
-            report.hint = hint(exercise, report)
+            report.hint = hint(exercise, report, progress)
         return {"report": report.as_dict()}
     except (EcsimError, ProgramError) as error:
         return {"reason": str(error)}
@@ -180,8 +205,8 @@ def _graded(exercise: Exercise, request: dict[str, Any]) -> dict[str, Any]:
         return {"reason": f"Grading failed: {type(error).__name__}: {error}"}
 
 
-def _in_a_child(exercise: Exercise, request: dict[str, Any]) -> str:
-    """Grade in a child under limits; its answer as a line, or the reason why there is none."""
+def _in_a_child(exercise: Exercise, request: dict[str, Any], tell: Callable[[str], Any]) -> str:
+    """Grade in a child under limits; its answer as a line, or the reason why there is none. Its lines of progress are passed on."""
     limits = Limits(**request["limits"])
     reading, writing = os.pipe()
     child = os.fork()
@@ -190,23 +215,25 @@ def _in_a_child(exercise: Exercise, request: dict[str, Any]) -> str:
         try:
             os.close(reading)
             _confine(limits)
-            answer = json.dumps(_graded(exercise, request)).encode()
-            with os.fdopen(writing, "wb") as pipe:
-                pipe.write(answer)
+            with os.fdopen(writing, "w", encoding="utf-8", buffering=1) as pipe:
+                pipe.write(json.dumps(_graded(exercise, request, lambda line: pipe.write(line + "\n"))))
             code = 0
         finally:
             os._exit(code)
     os.close(writing)
     timer = threading.Timer(limits.wall_s, os.kill, (child, signal.SIGKILL))
     timer.start()
+    answer = ""
     try:
-        with os.fdopen(reading, "rb") as pipe:
-            answer = pipe.read()
+        with os.fdopen(reading, encoding="utf-8") as pipe:
+            for answer in pipe:
+                if answer.endswith("\n"):  # only the answer itself, the last one, has no such end
+                    tell(answer.rstrip())
     finally:
         timer.cancel()
     _, status, used = os.wait4(child, 0)
     if os.WIFEXITED(status) and os.WEXITSTATUS(status) == 0 and answer:
-        return answer.decode()
+        return answer
     spent = used.ru_utime + used.ru_stime
     if spent >= limits.cpu_s - 1:
         reason = f"The program took more than {limits.cpu_s} s of the processor."

@@ -8,6 +8,7 @@ import pytest
 
 from ecsim import EcsimError
 from ecsim.cli import main
+from ecsim.grading import find_exercise
 from ecsim.grading.classroom import grade_class, read_table, submissions_in
 from ecsim.grading.sandbox import Judge, Limits, Submission
 
@@ -198,6 +199,21 @@ def test_the_command_grades_a_program(conveyor, tmp_path, capsys):
     assert (data["marks"], data["program"]) == (13, "answer")
     assert "network" in data["hint"]
     assert "data-rule" in (tmp_path / "r.html").read_text()
+
+
+def test_the_command_shows_how_far_the_search_for_a_hint_is(tmp_path, capsys, monkeypatch):
+    answer = tmp_path / "answer.il"
+    answer.write_text(find_exercise("motor").mistakes["no_hold"][0])
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
+    assert main(["grade", "motor", str(answer), "--hint"]) == 1
+    said = capsys.readouterr()
+    assert "hint: " in said.out
+    shares = [int(line.partition("] ")[2].partition("/100 looking for a hint")[0]) for line in said.err.split("\r")[1:]]
+    assert shares == sorted(set(shares))
+    assert shares
+    assert said.err.endswith("\n")
+    assert main(["grade", "motor", str(answer), "--json"]) == 1
+    assert capsys.readouterr().err == ""  # without --hint nothing is looked for
 
 
 def test_the_command_grades_a_class(folder, tmp_path, capsys):
