@@ -14,6 +14,7 @@ import ast
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
+from operator import itemgetter
 from typing import Any
 
 from ..errors import EcsimError
@@ -45,8 +46,7 @@ def combine(function: Callable, signals: Sequence[Signal]) -> Signal:
                 found.append((scan, result))
                 last = result
         return found
-    # No two of them have both scan and place in common: the values are not compared.
-    changes = sorted([(scan, place, value) for place, signal in enumerate(signals) for scan, value in signal])
+    changes = sorted([(scan, place, value) for place, signal in enumerate(signals) for scan, value in signal], key=itemgetter(0))
     values: list[Any] = [0] * len(signals)
     now = changes[0][0]
     for scan, place, value in changes:
