@@ -163,6 +163,9 @@ panels.chart = (place, layout, page, view) => {
   function mark() {
     const active = state.active ?? [];
     for (const [device, node] of boxes) {
+      const now = `${active.includes(device)} ${device === chosen} ${device in (state.breaks ?? {})}`;
+      if (node.marked === now) continue;
+      node.marked = now;
       const broken = device in (state.breaks ?? {}) ? ", breakpoint" : "";
       const words = `${`${device} ${layout.steps[device].name}`.trim()}${broken}`;
       set(node, "data-on", active.includes(device) ? "" : null);

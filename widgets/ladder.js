@@ -1,6 +1,8 @@
 // The ladder with the power flow of the last scan. Python lays it out for the width that there is and tells where every network
-// lies; the page tells which networks it looks at, about three screens of them, and gets their drawings and values. Drawings of networks
+// lies; the page tells which networks it looks at, those near sight too, and gets their drawings and values. Drawings of networks
 // that it has looked at lately stay in the state; only those in and near sight are elements of the page. An element that is chosen can be written and forced, can have a breakpoint, and tells where its device is used.
+
+const SPARE_PX = 800; // at most so much above and below what is in sight
 
 panels.ladder = (place, layout, page, view) => {
   const { section, body, sub } = frame(place, {
@@ -121,14 +123,15 @@ panels.ladder = (place, layout, page, view) => {
   }
   roving(body, () => [...body.querySelectorAll("[data-position]")]);
 
-  // Tells Python about three screens of networks, again as soon as less than half a screen is left above or below.
+  // Tells Python about what is in sight and as much above and below, again as soon as less than half of that is left.
   function look() {
     track();
     [top, high] = [body.scrollTop, body.clientHeight];
     if (!drawing || !high || !count()) return;
     const first = numberAt(top);
-    if (!near || numberAt(top - high / 2) < near[0] || numberAt(top + 1.5 * high) > near[1]) {
-      near = [numberAt(top - high), numberAt(top + 2 * high)];
+    const spare = Math.min(high, SPARE_PX);
+    if (!near || numberAt(top - spare / 2) < near[0] || numberAt(top + high + spare / 2) > near[1]) {
+      near = [numberAt(top - spare), numberAt(top + high + spare)];
       if (furnish()) {
         drawing.apply(state);
         mark();

@@ -1,5 +1,7 @@
 // Timers and counters in use, and the time of the active steps: value, preset, a bar, the state in words.
 
+const TALL = 30; // so many rows are in sight at once
+
 panels.timers = (place, layout, page) => {
   const { rows = [], timers = 0, counters = 0 } = layout;
   const { body } = frame(place, { title: "Timers and counters", sub: `${rows.length} in use`, key: "timers", tools: '<button class="tool" data-testid="seconds" aria-pressed="false" title="Values and presets of timers in seconds">Seconds</button>' });
@@ -26,49 +28,72 @@ panels.timers = (place, layout, page) => {
   body.innerHTML = `
     <table class="grid timers"><thead><tr><th><span class="visually-hidden">Contact</span></th><th>Device</th><th>Name</th><th class="kind">Kind</th><th class="num">Value</th><th class="num">Preset</th><th></th><th class="num base">Base</th><th>State</th><th class="used">Steps</th></tr></thead>
       <tbody>${of("timer", timers)}${of("counter", counters)}</tbody><tbody class="steps"></tbody></table>`;
+  body.classList.add("scroll", "timers-scroll");
+  if (rows.length > TALL) body.tabIndex = 0; // to be scrolled by key
   if (!rows.length && !layout.sfc) body.innerHTML = '<p class="nothing">The program uses no timers and no counters.</p>';
-  const bold = (words) => escaped(words).replace(/\*(.+?)\*/g, "<b>$1</b>");
+  const found = (line) => Object.fromEntries(
+    Object.entries({ value: ".val b", preset: ".preset", contact: ".contact", wire: ".wire", mini: ".mini", say: ".say", gauge: ".gauge", track: ".track", fill: ".fill", goal: ".goal", zero: ".zero" }).map(([name, selector]) => [name, line.querySelector(selector)]),
+  );
+  // A row is drawn for itself, so that many of them do not hold up a frame, and those out of sight not those in sight.
+  const drawn = new Map(
+    rows.map((one) => {
+      const line = body.querySelector(`tr[data-device="${one.device}"]`);
+      const nodes = found(line);
+      work.sights.observe(line);
+      return [one.device, { line, draw: () => show(one, line, nodes) }];
+    }),
+  );
 
-  function draw(node, value, preset, segments, twoSided) {
-    const [track, fill, goal, zero] = [".track", ".fill", ".goal", ".zero"].map((part) => node.querySelector(part));
+  // A bar of 300: in segments for a small preset, from the middle for what counts both ways, else as long as what has passed.
+  function draw({ gauge, track, fill, goal, zero }, value, preset, segments, twoSided) {
     const shape = `${preset}/${segments}/${twoSided}`;
     const cells = segments && preset > 0 && preset <= 20 ? preset : 1;
     const pitch = 300 / cells;
     const part = (at, from, to, thick) => `<rect x="${(at * pitch + from).toFixed(1)}" y="${9 - thick / 2}" width="${Math.max(0, to - from).toFixed(1)}" height="${thick}"/>`;
-    if (node.dataset.shape !== shape) {
-      node.dataset.shape = shape;
+    const bar = (x, width) => {
+      set(fill.firstChild, "x", x.toFixed(1));
+      set(fill.firstChild, "width", width.toFixed(1));
+    };
+    if (gauge.dataset.shape !== shape) {
+      gauge.dataset.shape = shape;
       const gap = cells > 1 ? 3 : 0;
       track.innerHTML = Array.from({ length: cells }, (_, at) => part(at, 0, pitch - gap, 6)).join("");
+      fill.innerHTML = cells > 1 ? "" : part(0, 0, 0, 8);
       set(goal, "d", cells > 1 ? "" : twoSided ? `M${150 + 120 * Math.sign(preset)} 1v16` : "M299 1v16");
       set(zero, "d", twoSided ? "M150 1v16" : "");
     }
-    if (twoSided) {
+    if (cells > 1) {
+      const full = Math.min(cells, Math.max(0, value));
+      while (fill.children.length > full) fill.lastChild.remove();
+      if (fill.children.length < full) fill.innerHTML = Array.from({ length: full }, (_, at) => part(at, 0, pitch - 3, 8)).join("");
+    } else if (twoSided) {
       const at = Math.max(-150, Math.min(150, (120 * value) / Math.abs(preset || 1)));
-      fill.innerHTML = `<rect x="${Math.min(150, 150 + at).toFixed(1)}" y="5" width="${Math.abs(at).toFixed(1)}" height="8"/>`;
-    } else if (cells > 1) {
-      fill.innerHTML = Array.from({ length: Math.min(cells, Math.max(0, value)) }, (_, at) => part(at, 0, pitch - 3, 8)).join("");
+      bar(Math.min(150, 150 + at), Math.abs(at));
     } else {
-      const at = preset > 0 ? Math.max(0, Math.min(1, value / preset)) * 300 : 0;
-      fill.innerHTML = `<rect x="0" y="5" width="${at.toFixed(1)}" height="8"/>`;
+      bar(0, preset > 0 ? Math.max(0, Math.min(1, value / preset)) * 300 : 0);
     }
   }
 
-  function show(one, state) {
-    const line = body.querySelector(`tr[data-device="${one.device}"]`);
+  // Words of which those between two stars are bold.
+  function tell(node, words) {
+    const parts = words.split("*");
+    if (node.childNodes.length !== parts.length) node.replaceChildren(...parts.map((_, at) => (at % 2 ? document.createElement("b") : document.createTextNode(""))));
+    parts.forEach((text, at) => write(node.childNodes[at], text));
+  }
+
+  function show(one, line, nodes) {
     const value = state[one.device] ?? 0;
     const preset = state[`${one.device}.preset`] ?? 0;
     const on = state[`${one.device}.on`];
     set(line, "data-state", state[`${one.device}.is`] ?? "off");
-    write(line.querySelector(".val b"), amount(one, value));
-    write(line.querySelector(".preset"), amount(one, preset));
-    set(line.querySelector(".contact"), "class", on ? "contact flow" : "contact open");
-    set(line.querySelector(".wire"), "class", on ? "wire on" : "wire");
-    set(line.querySelector(".mini"), "aria-label", on ? "contact closed" : "contact open");
-    set(line.querySelector(".mini"), "data-on", on ? "" : null);
-    draw(line.querySelector(".gauge"), value, preset, one.unit === "counter", one.signed);
-    const say = line.querySelector(".say");
-    const words = bold(state[`${one.device}.say`] ?? "");
-    if (say.dataset.words !== words) say.innerHTML = say.dataset.words = words;
+    write(nodes.value, amount(one, value));
+    write(nodes.preset, amount(one, preset));
+    set(nodes.contact, "class", on ? "contact flow" : "contact open");
+    set(nodes.wire, "class", on ? "wire on" : "wire");
+    set(nodes.mini, "aria-label", on ? "contact closed" : "contact open");
+    set(nodes.mini, "data-on", on ? "" : null);
+    draw(nodes, value, preset, one.unit === "counter", one.signed);
+    tell(nodes.say, state[`${one.device}.say`] ?? "");
   }
 
   function active(steps) {
@@ -87,7 +112,7 @@ panels.timers = (place, layout, page) => {
       const line = tail.querySelector(`tr[data-device="${device}"]`);
       write(line.querySelector(".val b"), seconds(elapsed_us, 2));
       write(line.querySelector(".preset"), usual_us ? seconds(usual_us, 2) : "");
-      draw(line.querySelector(".gauge"), elapsed_us, usual_us ?? 0, false, false);
+      draw(found(line), elapsed_us, usual_us ?? 0, false, false);
       set(line.querySelector(".goal"), "class", "goal soft");
       set(line.querySelector(".goal"), "d", usual_us ? "M299 1v16" : "");
       write(line.querySelector(".scans"), `${number(scans)} ${scans === 1 ? "scan" : "scans"}`);
@@ -99,15 +124,21 @@ panels.timers = (place, layout, page) => {
     inSeconds = !inSeconds;
     set(tool, "aria-pressed", String(inSeconds));
     set(body.querySelector(".grid"), "data-seconds", inSeconds ? "" : null);
-    for (const one of rows) show(one, state);
+    for (const { draw } of drawn.values()) draw();
   });
 
   return {
     apply(changes, now) {
       state = now;
       const touched = new Set(Object.keys(changes).map((key) => key.split(".")[0]));
-      for (const one of rows) if (touched.has(one.device)) show(one, state);
+      for (const [device, { line, draw }] of drawn) if (touched.has(device)) work.draw(draw, line);
       if (changes.steps) active(changes.steps);
+    },
+    close() {
+      for (const { line, draw } of drawn.values()) {
+        work.drop(draw);
+        work.sights.unobserve(line);
+      }
     },
   };
 };

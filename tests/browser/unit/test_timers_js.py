@@ -96,3 +96,18 @@ def test_the_active_step_tells_its_time(timers):
     timers.lab.plc["X7"] = 1
     scan(timers, 2)
     assert timers["timers"].locator(".steps .dev").inner_text() == "S20"
+
+
+def test_many_rows_scroll_in_the_panel_below_their_heads_and_all_come_to_be_drawn(bench, make_lab):
+    lab = make_lab("\n".join(f"LD SM0\nTON T{number} 900" for number in range(120)))
+    bench.connect(lab.panel("timers"))
+    body = bench["timers"].locator(".timers-scroll")
+    assert body.evaluate("(body) => [body.clientHeight, body.scrollHeight > 3000, body.tabIndex]") == [1280, True, 0]
+    lab.session.scan(101)  # the first execution counts nothing: 1 s
+    bench.settle()
+    values = bench["timers"].locator("tr[data-device] .val").all_inner_texts()
+    assert values == ["10"] * 120
+    body.evaluate("(body) => { body.scrollTop = 2000; }")
+    tops = "(body) => [body, body.querySelector('thead')].map((node) => Math.round(node.getBoundingClientRect().top))"
+    top, head = body.evaluate(tops)
+    assert top == head
