@@ -191,7 +191,7 @@ def decorations(call: ast.Call) -> Iterator[tuple[str, str, ast.Call]]:
 
 def signatures(text: str) -> Iterator[str]:
     """A signature with a bound of a range off by one, a range, `^` or span less, or a span of another length."""
-    words = text.split(" ")
+    words = re.findall(r"(?:\[[^]]*\]|\S)+", text)  # an area list has blanks of its own
     for place, word in enumerate(words):
         others = []
         bare, equals, bounds = word.partition("=")
