@@ -279,7 +279,7 @@ class Resolver:
 
     def _writable(self, device: Device | Bits, length: int, text: str) -> None:
         model = self.model
-        fixed, first = model.read_only(device.area), model.registers["clock"]
+        fixed, first = model.read_only(device.area), model.registers.get("clock", model.areas[model.special_words].count)
         if any(number in fixed for number in range(device.number, device.number + length)):
             clock = device.area == model.special_words and 0 <= device.number - first < CLOCK_PARTS
             raise Refused(
