@@ -76,6 +76,10 @@ def test_pointers_are_told_as_they_are_written():
     assert re.search(r"^  S +read .* P +P0 to P127$", str(ecsim.help("CJ", "H2U")), re.MULTILINE)
 
 
+def test_a_label_begins_subroutines_as_well():
+    assert "begins a subroutine" in ecsim.help("P", "H2U").title
+
+
 def test_every_instruction_has_an_example():
     assert [name for name in names_of(H2U) if ecsim.help(name, "H2U").example is None] == []
 

@@ -17,7 +17,7 @@ def next_(code):
 
 @emitted("LBL", "S:LABEL", steps=3, section="6.1.3", bus=True)
 def lbl(code, label):
-    """Mark the place that CJ jumps to."""
+    """Mark the place that CJ jumps to; as a pointer (P) behind FEND it begins a subroutine."""
     code.label(label.value)
 
 
