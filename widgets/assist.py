@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
+from itertools import islice
 from typing import NamedTuple
 
 from ecsim.assembler import assemble
-from ecsim.assembler.reader import HEADERS, RawUnit, Source, read
-from ecsim.devices import Bits, Device, number_text
+from ecsim.assembler.operands import Refused, Resolver
+from ecsim.assembler.reader import HEADERS, RawUnit, Source, code_of, read
+from ecsim.devices import Bits, Device, Operand, Pointer, number_text
 from ecsim.errors import ProgramError
-from ecsim.instructions import Definition
-from ecsim.instructions.signature import OperandSpec
-from ecsim.instructions.spelling import instructions_of
+from ecsim.instructions import TABLE, Definition
+from ecsim.instructions.spelling import choices_of, instructions_of, pulse_forms_of, section_of, told
 from ecsim.models import Model
 
 MOST = 60  # completions that are offered at once
@@ -43,13 +44,13 @@ def marks(text: str, model: Model) -> list[Mark]:
         assemble(text, model)
     except ProgramError as error:
         lines = text.split("\n")
-        return [_mark(problem, lines) for problem in error.problems]
+        return [_mark(problem, lines, model) for problem in error.problems]
     return []
 
 
-def _mark(problem, lines: list[str]) -> Mark:
+def _mark(problem, lines: list[str], model: Model) -> Mark:
     line = min(max(problem.line, 1), len(lines))
-    written = lines[line - 1].split("//")[0]
+    written = code_of(lines[line - 1], model.syntax)
     word = _WORD.match(written, problem.column - 1) if problem.column else None
     if word is None:  # the line as a whole
         start = len(written) - len(written.lstrip())
@@ -64,22 +65,56 @@ class Place:
 
     def __init__(self, text: str, at: int, model: Model):
         self.model = model
+        self.resolver = Resolver(model, {})
         before = text[:at]
         line = before.rpartition("\n")[2]
-        self.commented = "//" in line or _open_comment(before)
+        self.commented = code_of(line, model.syntax) != line or _open_comment(before)
         self.word = re.search(r"[^\s,]*$", line)[0]
         self.start = at - len(self.word)
         self.words = _WORD.findall(line[: len(line) - len(self.word)])
         self.source: Source = read(text, syntax=model.syntax)
+        name = self.words[0].upper() if self.words else ""
+        self.row, self.choice = self._rows().get(name), choices_of(model).get(name)
+        self.known = [self._known(word) for word in self.words[1:]]
         self.unit = self._unit(before.count("\n") + 1)
 
     def _unit(self, line: int) -> RawUnit | None:
         return next((unit for unit in reversed(self.source.units) if unit.line <= line), None)
 
-    @property
-    def definition(self) -> Definition | None:
-        """The instruction of the line, once its word is written."""
-        return instructions_of(self.model).get(self.words[0].upper()) if self.words else None
+    def _rows(self) -> dict[str, Definition]:
+        return instructions_of(self.model) | pulse_forms_of(self.model)
+
+    def _known(self, word: str) -> Operand | None:
+        """The operand that a word or a global variable's name stands for."""
+        meant = next((variable.what for variable in self.source.globals if variable.name.casefold() == word.casefold()), word)
+        return _parsed(self.model.syntax.parse, meant.upper())
+
+    def _forms(self, *more: Operand) -> tuple[Definition, ...]:
+        """The rows that the line's instruction may be with the operands before the cursor, and more of them; the usual one first."""
+        if self.choice:
+            return tuple(TABLE[key] for key in dict.fromkeys(self.choice.behind((*self.known, *more))))
+        return (self.row,) if self.row else ()
+
+    def _areas(self, row: Definition, place: int) -> list[str]:
+        """Where an operand of a form may lie, without the devices with which another form is meant."""
+        room = self.model.areas
+
+        def meant(area: str) -> bool:
+            return any(row in self._forms(Device(area, number)) for number in range(room[area].count))
+
+        here = self.choice and place == len(self.known)
+        return [area for area in self.resolver.areas(row.operands[place]) if not here or area not in room or meant(area)]
+
+    def _takes(self, operand: Device | Bits) -> bool:
+        """Whether a form that is open takes an operand where the cursor stands."""
+        place = len(self.known)
+        for row in self._forms(operand):
+            try:
+                self.resolver.check(row.operands[place], operand, str(operand))
+                return True
+            except (IndexError, Refused):
+                continue
+        return False
 
     def options(self) -> list[Option]:
         """What the word before the cursor may become: instructions at the line's begin, else what fits the operand."""
@@ -91,71 +126,92 @@ class Place:
         return list(found.values())[:MOST]
 
     def _firsts(self) -> Iterator[Option]:
-        for mnemonic, row in instructions_of(self.model).items():
-            yield Option(mnemonic, "op", row.title)
+        for name, row in self._rows().items():
+            if name not in self.model.syntax.pointers.values():  # these are written with their number
+                yield Option(name, "op", told(self.model, row, row.title))
         for header in ("VAR_GLOBAL", "END_VAR") if self.model.syntax.pointers else sorted(HEADERS):
             yield Option(header, "keyword", "")
 
     def _operands(self) -> Iterator[Option]:
-        row, place = self.definition, len(self.words) - 1
-        if row is None:
+        place = len(self.known)
+        if self.row and self.row.mnemonic == "CALL":
+            yield from self._routines() if place == 0 else () if self.model.syntax.pointers else self._devices((), lambda operand: True)
             return
-        if row.mnemonic == "CALL":
-            yield from self._routines() if place == 0 else self._of_areas(None)
-        elif place < len(row.operands):
-            yield from self._of_areas(row.operands[place])
+        specs = [row.operands[place] for row in self._forms() if place < len(row.operands)]
+        letters = {self.model.syntax.pointers.get(spec.kind) for spec in specs} - {None}
+        if letters:
+            yield from self._pointers(letters)
+        if specs:
+            areas = dict.fromkeys(area for row in self._forms() if place < len(row.operands) for area in self._areas(row, place))
+            yield from self._devices(areas, self._takes, {spec.type.name for spec in specs})
 
     def _routines(self) -> Iterator[Option]:
         for unit in self.source.units:
             if unit.kind == "SUBROUTINE":
                 yield Option(unit.name, "name", "subroutine")
 
-    def _of_areas(self, spec: OperandSpec | None) -> Iterator[Option]:
-        """Variables, the devices that the text speaks of already, and each area's next free device."""
-        areas = None if spec is None else spec.areas
+    def _operands_used(self) -> dict[str, None]:
+        """The words that stand for operands in the text, each once."""
+        return dict.fromkeys(word for unit in self.source.units for statement in unit.statements for word in statement.operands)
+
+    def _pointers(self, letters: set[str]) -> Iterator[Option]:
+        """The pointers with these letters that the text has already."""
+        for word in self._operands_used():
+            operand = _parsed(self.model.syntax.parse, word.upper())
+            if isinstance(operand, Pointer) and operand.letter in letters and word != self.word:
+                yield Option(str(operand), "name", "used in this program")
+
+    def _devices(self, areas: Iterable[str], takes: Callable[[Device | Bits], bool], types: set[str] | None = None) -> Iterator[Option]:
+        """Variables, the devices that the text speaks of already, and each area's next free device, as far as they are taken."""
         parse = self.model.syntax.parse
         used: dict[str, set[int]] = {}
         for variable in self.source.globals:
-            device = _parsed(parse, variable.what)
-            if isinstance(device, Device) and (areas is None or device.area in areas):
+            device = _parsed(parse, variable.what.upper())
+            if isinstance(device, Device) and takes(device):
                 yield Option(variable.name, "name", f"{device} {variable.comment}".strip())
         for variable in self.unit.variables if self.unit else ():
-            if spec is None or variable.what == spec.type.name:
+            if types is None or variable.what in types:
                 yield Option(f"#{variable.name}", "name", f"{variable.role.lower()} {variable.what} {variable.comment}".strip())
         names = {variable.what.upper(): variable.name for variable in self.source.globals}
-        for unit in self.source.units:
-            for statement in unit.statements:
-                for word in statement.operands:
-                    operand = _parsed(parse, word.upper())
-                    if isinstance(operand, Device):
-                        used.setdefault(operand.area, set()).add(operand.number)
-                    kind = f"Kn{operand.area}" if isinstance(operand, Bits) else getattr(operand, "area", None)
-                    if isinstance(operand, Device | Bits) and (areas is None or kind in areas) and word != self.word:
-                        yield Option(str(operand), "device", names.get(str(operand), "used in this program"))
-        for area in spec.order if spec else ():
-            if area in self.model.areas:
-                room = self.model.areas[area]
-                first = next((number for number in range(room.end(0)) if number not in used.get(area, ())), 0)
+        for word in self._operands_used():
+            operand = _parsed(parse, word.upper())
+            if isinstance(operand, Device):
+                used.setdefault(operand.area, set()).add(operand.number)
+            if isinstance(operand, Device | Bits) and word != self.word and takes(operand):
+                yield Option(str(operand), "device", names.get(str(operand), "used in this program"))
+        for area in areas:
+            room = self.model.areas.get(area)
+            numbers = (n for n in range(room.end(0)) if n not in used.get(area, ()) and takes(Device(area, n))) if room else ()
+            for first in islice(numbers, 1):
                 yield Option(f"{area}{number_text(area, first)}", "device", f"the first one unused, of {room.span}")
 
     def signature(self) -> dict | None:
         """The instruction of the line with its operands, and which of them is being typed; None where there is none."""
-        row = self.definition
-        if row is None or self.commented:
+        forms = self._forms()
+        if not forms or self.commented:
             return None
+        row, name = forms[0], self.words[0].upper()
+        uses = [
+            " or ".join(dict.fromkeys(self._use(form, place) for form in forms if place < len(form.operands) and self._areas(form, place)))
+            for place in range(len(row.operands))
+        ]
         return {
-            "mnemonic": self.words[0].upper(),
-            "title": row.title,
-            "section": row.section,
-            "at": len(self.words) - 1,
-            "operands": [[spec.name, _use(spec)] for spec in row.operands],
+            "mnemonic": name,
+            "title": told(self.model, row, row.title),
+            "section": section_of(self.model, name, row),
+            "at": len(self.known),
+            "operands": [[spec.name, use] for spec, use in zip(row.operands, uses, strict=True)],
         }
 
-
-def _use(spec: OperandSpec) -> str:
-    words = {"const": "constant", "routine": "subroutine", "text": "text"}
-    limits = f", {spec.range[0]} to {spec.range[1]}" if spec.range else ""
-    return f"{spec.type.name}{', written' if spec.written else ''}{limits}: {' '.join(words.get(area, area) for area in spec.order)}"
+    def _use(self, row: Definition, place: int) -> str:
+        """What an operand is: its type, whether it is written, its numbers, and where it may lie."""
+        spec = row.operands[place]
+        letter = self.model.syntax.pointers.get(spec.kind, "")
+        limits = self.model.operand_ranges.get(spec.kind, spec.range)
+        numbers = f", {letter}{limits[0]} to {letter}{limits[1]}" if limits else ""
+        words = {"const": "pointer" if letter else "constant", "routine": "subroutine", "text": "text"}
+        places = " ".join(words.get(area, area) for area in self._areas(row, place))
+        return f"{spec.type.name}{', written' if spec.written else ''}{numbers}: {places}"
 
 
 def _parsed(parse, word: str):

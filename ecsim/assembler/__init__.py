@@ -4,12 +4,12 @@ from collections.abc import Mapping
 from dataclasses import replace
 from difflib import get_close_matches
 
-from ..devices import Bits, Constant, Device, Name, Pointer
+from ..devices import Bits, Constant, Device, Name, Operand
 from ..errors import ProgramError
 from ..instructions import TABLE, Definition
 from ..instructions.signature import OperandSpec, parse_signature
-from ..instructions.spelling import instructions_of, pulse_forms_of, section_of
-from ..models import By, Model, get_model
+from ..instructions.spelling import choices_of, instructions_of, pulse_forms_of, section_of
+from ..models import Model, get_model
 from ..values import BOOL, TYPES
 from .hints import elsewhere
 from .inputs import check_inputs
@@ -48,7 +48,7 @@ class _Assembler:
         self.source, self.model = source, model
         source.section = model.section
         self.parameters: dict[tuple[str, str, str], OperandSpec] = {}  # of CALL, by role, type and name
-        self.choices = {spelled: meant for spelled, meant in model.spelling.items() if isinstance(meant, By)}
+        self.choices = choices_of(model)
         rising = pulse_forms_of(model)
         self.definitions = instructions_of(model) | rising
         self.at_rise = rising.keys()
@@ -274,21 +274,15 @@ class _Assembler:
 
     def _meant(self, name: str, words: tuple[str, ...], unit: Unit) -> tuple[str, ...]:
         """What a name may still stand for behind these operands, the usual first; nothing for one that stands for the same always."""
-        choice = self.choices.get(name.removesuffix(self.model.pulse_suffix) if name in self.at_rise else name)
-        for word in words:
-            if not isinstance(choice, By):
-                break
-            try:
-                operand = self.resolver.resolve(word, unit.variables)
-            except Refused:
-                operand = None  # it is told when the operands are held against the usual row
-            if isinstance(operand, Pointer):
-                choice = choice.of(operand.letter, operand.value)
-            elif isinstance(operand, Device | Bits):
-                choice = choice.of(f"Kn{operand.area}" if isinstance(operand, Bits) else operand.area, operand.number)
-            else:
-                choice = choice.usual
-        return choice.keys if isinstance(choice, By) else (choice,) if choice else ()
+        choice = self.choices.get(name)
+        return choice.behind(self._known(word, unit) for word in words) if choice else ()
+
+    def _known(self, word: str, unit: Unit) -> Operand | None:
+        """The operand that a word stands for, None for one that is told when the operands are held against the usual row."""
+        try:
+            return self.resolver.resolve(word, unit.variables)
+        except Refused:
+            return None
 
     def _unknown(self, statement: Statement) -> None:
         written = statement.mnemonic

@@ -108,6 +108,11 @@ def read(text: str | Mapping[str, str], name: str = "", syntax: Syntax | None = 
     return source
 
 
+def code_of(line: str, syntax: Syntax) -> str:
+    """A line without the comment behind its instruction."""
+    return (_PointerReader if syntax.pointers else _Reader)._cut(line)[0]
+
+
 class _Reader:
     def __init__(self, source: Source):
         self.source = source

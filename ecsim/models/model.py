@@ -1,8 +1,9 @@
 """What one model of PLC is, as data: its devices, relays, registers, limits and the spelling of its programs."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from ..devices import Syntax, number_text
+from ..devices import Bits, Device, Operand, Pointer, Syntax, number_text
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,6 +155,20 @@ class By:
     def of(self, area: str, number: int) -> "str | By":
         """What the name stands for with this device."""
         return next((key for name, first, last, key in self.cases if name == area and first <= number <= last), self.usual)
+
+    def behind(self, operands: Iterable[Operand | None]) -> tuple[str, ...]:
+        """What the name may still stand for behind these operands, the usual first; None is an operand that nothing is known of."""
+        choice: str | By = self
+        for operand in operands:
+            if not isinstance(choice, By):
+                break
+            if isinstance(operand, Pointer):
+                choice = choice.of(operand.letter, operand.value)
+            elif isinstance(operand, Device | Bits):
+                choice = choice.of(f"Kn{operand.area}" if isinstance(operand, Bits) else operand.area, operand.number)
+            else:
+                choice = choice.usual
+        return choice.keys if isinstance(choice, By) else (choice,)
 
     @property
     def keys(self) -> tuple[str, ...]:
