@@ -215,7 +215,7 @@ class _Assembler:
         timers: dict[int, Unit] = {}  # by the relay that each timer has; one gives one period
         for unit in self.units:
             first = seen.setdefault(unit.name.upper(), unit)
-            if first is not unit and self.model.syntax.pointers:  # that label has been told twice already
+            if first is not unit and self.model.syntax.pointers:  # it has been told where the label stands
                 continue
             if first is not unit:
                 self.source.report(

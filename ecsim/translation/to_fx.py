@@ -37,7 +37,7 @@ HINTS = {
 }  # fmt: skip
 IN_PLACE = frozenset("ROR DROR ROL DROL RCR DRCR RCL DRCL NEG DNEG".split())
 EDGES = {("LD", "EU"): "P", ("LD", "ED"): "F"}  # those of LDI differ in the first scan
-FIRST_HELPER = 499  # auxiliary relays are taken from here downward: they are not retained
+FIRST_AUXILIARY = 499  # auxiliary relays are taken from here downward: they are not retained
 
 
 class ToFX(Way):
@@ -158,7 +158,7 @@ class ToFX(Way):
         """An edge of a whole flow: a relay that is ON for the scan, and then stands for the flow."""
         if blocks > 1 or (branches and instruction.mnemonic == "ED"):
             raise Refusal("the edge of a part of a rung has no counterpart", "put the edge on an auxiliary relay by a rung of its own")
-        relay = str(self.places.free("M", range(FIRST_HELPER, -1, -1)))
+        relay = str(self.places.free("M", range(FIRST_AUXILIARY, -1, -1)))
         if instruction.mnemonic == "EU":
             return [self._line(instruction, "PLS", (relay,)), Line("AND", (relay,), instruction.line)]
         return [self._line(instruction, "PLF", (relay,)), Line("LD", (relay,), instruction.line)]
@@ -177,7 +177,7 @@ class ToFX(Way):
 
     def _mc(self, instruction: Instruction) -> list[Line]:
         level = f"N{instruction.operands[0].value}"
-        relay = self.places.free("M", range(FIRST_HELPER, -1, -1))
+        relay = self.places.free("M", range(FIRST_AUXILIARY, -1, -1))
         return [self._line(instruction, "MC", (level, str(relay)))]
 
     def _mcr(self, instruction: Instruction) -> list[Line]:
