@@ -1,14 +1,14 @@
-"""Single edits of a program's text: what a slip of the hand makes of one line, and what one line would have to be to mend another.
+"""Single edits of a program's text: what a slip of the hand makes of one line.
 
-The same edits make the faulty programs that measure an exercise's rules and look for the network of a student's fault.
+The same edits make the faulty programs that measure an exercise's rules and look for the network of a student's fault; `repairs.py` has
+what is tried besides for the latter.
 """
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ..assembler.reader import Source, Statement, read
-from ..instructions import TABLE
 
 CONTACTS = {"LD": "LDI", "LDI": "LD", "AND": "ANI", "ANI": "AND", "OR": "ORI", "ORI": "OR", "EU": "ED", "ED": "EU"}
 JOINED = {"AND": "OR", "OR": "AND", "ANI": "ORI", "ORI": "ANI", "ANB": "ORB", "ORB": "ANB"}
@@ -18,18 +18,30 @@ STEPS = {"INC": ("DEC",), "DEC": ("INC",), "ADD": ("SUB",), "SUB": ("ADD",)}
 COMPARISONS = {"=": ("<>", ">="), "<>": ("=",), ">": (">=", "<="), ">=": (">", "<"), "<": ("<=", ">="), "<=": ("<", ">")}
 SMALL = 20  # numbers above it are changed by a tenth: one unit of 100 ms in five minutes is what every statement leaves open
 _COMPARISON = re.compile(r"(LD|AND|OR)([DR]?)(=|<>|>=|<=|>|<)")
-_NUMBER = re.compile(r"-?\d+")
+NUMBER = re.compile(r"-?\d+")
 _DEVICE = re.compile(r"([A-Z]+)(\d+)")
 
 
 @dataclass(frozen=True)
 class Edit:
-    """One line of a program changed: `line` from 1, `old` and `new` code (new is empty for a line left out), and the whole text."""
+    """One place of a program changed: `line` from 1, `old` and `new` code of it (new is empty for what is left out).
+
+    `changes` are all lines with other code, where they are more than this one.
+    """
 
     line: int
     old: str
     new: str
-    text: str
+    program: str
+    changes: tuple[tuple[int, str], ...] = ()
+
+    @property
+    def text(self) -> str:
+        """The whole program as it becomes; the comments of changed lines go, so that nothing tells."""
+        lines = self.program.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n").split("\n")
+        for line, code in self.changes or ((self.line, self.new),):
+            lines[line - 1] = code
+        return "\n".join(lines)
 
     def __str__(self) -> str:
         return f"line {self.line}: {self.old} -> {self.new or 'nothing'}"
@@ -39,37 +51,17 @@ def edits(text: str) -> Iterator[Edit]:
     """Every single slip of the hand in a program."""
     source = read(text)
     named = _neighbours(source)
-    for statement in _statements(source):
+    for statement in statements(source):
         old = " ".join((statement.mnemonic, *statement.operands))
         for new in dict.fromkeys(_changes(statement, named)):
             if new != old:
-                yield Edit(statement.line, old, new, _with_line(text, statement.line, new))
+                yield Edit(statement.line, old, new, text)
 
 
-def additions(text: str, contacts: Sequence[str], coils: Sequence[str], words: Sequence[str] = ()) -> Iterator[Edit]:
-    """What may have been forgotten: edges, contacts and coils of these bits and comparisons of these words behind a line, or another number
-    of the program in a number's place.
-
-    `new` has the line and, below it, what is added.
-    """
-    source = read(text)
-    numbers = list(dict.fromkeys(one for statement in _statements(source) for one in statement.operands if _NUMBER.fullmatch(one)))
-    for statement in _statements(source):
-        old = " ".join((statement.mnemonic, *statement.operands))
-        for new in _additions(statement, contacts, coils, words, numbers):
-            yield Edit(statement.line, old, new, _with_line(text, statement.line, new))
-
-
-def _statements(source: Source) -> Iterator[Statement]:
+def statements(source: Source) -> Iterator[Statement]:
+    """Every instruction as written."""
     for unit in source.units:
         yield from unit.statements
-
-
-def _with_line(text: str, number: int, code: str) -> str:
-    """The text with the code of one line exchanged; its comment goes, so that nothing tells."""
-    lines = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    lines[number - 1] = code
-    return "\n".join(lines)
 
 
 def _changes(statement: Statement, named: dict[str, list[str]]) -> Iterator[str]:
@@ -93,7 +85,7 @@ def _changes(statement: Statement, named: dict[str, list[str]]) -> Iterator[str]
 
 def _other(operand: str, named: dict[str, list[str]]) -> list[str]:
     """What may stand in an operand's place: a number that is a little or much off, or a device of the same kind."""
-    if _NUMBER.fullmatch(operand):
+    if NUMBER.fullmatch(operand):
         number = int(operand)
         little = 1 if abs(number) <= SMALL else round(0.1 * abs(number))
         changed = dict.fromkeys((number + little, number - little, number * 10, number // 10, number // 2))
@@ -123,22 +115,3 @@ def _neighbours(source: Source) -> dict[str, list[str]]:
         for known in {written[area, number].casefold(), f"{area}{number}".casefold()}:
             near[known] = words
     return near
-
-
-def _additions(
-    statement: Statement, contacts: Sequence[str], coils: Sequence[str], words: Sequence[str], numbers: Sequence[str]
-) -> Iterator[str]:
-    """What one statement may become when something behind it was forgotten, or a number was taken from elsewhere."""
-    word, operands = statement.mnemonic.upper(), list(statement.operands)
-    row = TABLE.get(word)
-    own = " ".join((statement.mnemonic, *operands))
-    if row is not None and row.form == "contact":
-        yield from (f"{own}\n{edge}" for edge in ("EU", "ED"))
-        yield from (f"{own}\n{joint} {bit}" for bit in contacts for joint in ("AND", "ANI", "OR", "ORI"))
-        compared = dict.fromkeys(("0", *numbers))
-        yield from (f"{own}\nAND{sign} {word} {number}" for word in words for number in compared for sign in (">", "<", "="))
-    elif word in ("OUT", "SET", "RST"):
-        yield from (f"{own}\n{coil} {bit}" for bit in coils for coil in ("RST", "OUT", "SET"))
-    for place, operand in enumerate(operands):
-        if _NUMBER.fullmatch(operand):
-            yield from (" ".join((word, *operands[:place], other, *operands[place + 1 :])) for other in numbers if other != operand)
