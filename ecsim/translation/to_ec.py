@@ -25,7 +25,8 @@ NOTES = {
         "{name}: a result beyond the range goes on from the other end of the range there, from 0 here",
     ),
     **dict.fromkeys(("FX:OUT T", "FX:OUT T D", "FX:OUT T246", "FX:OUT T246 D"), "timers go on beyond their preset there"),
-    "FX:OUT C200": "counting down, the contact goes OFF on reaching the preset there and one count later here",
+    "FX:OUT C200": "counting down, the contact goes OFF on reaching the preset there and one count later here; "
+    "a count upward from the preset or above puts it ON there and leaves it here",
     "STL": "in the scan of a transition the step that is left is OFF there when the one that begins is ON",
     "FX:SEGD": "SEG clears the upper eight bits of its result",
 }

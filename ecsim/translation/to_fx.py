@@ -26,7 +26,8 @@ NOTES = {
     ),
     **dict.fromkeys(("TON", "TONR"), "timers stop at their preset there, and read one in a register when they start"),
     "CTU": "counters stop at their preset there",
-    "DCNT": "counting down, the contact goes OFF on reaching the preset here and one count later there",
+    "DCNT": "counting down, the contact goes OFF on reaching the preset here and one count later there; "
+    "a count upward from the preset or above puts it ON here and leaves it there",
     "SEG": "SEGD leaves the upper eight bits of its result as they are",
     "STL": "in the scan of a transition the step that is left stays ON there beside the one that begins",
 }

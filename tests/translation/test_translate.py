@@ -232,6 +232,25 @@ def test_the_contact_of_a_counter_that_counts_down_goes_off_one_count_apart(to, 
     assert ends == {"EC": 2, "FX": 1}
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "LD X0\nDCNT C200 0\nLD C200\nOUT Y0",  # a preset below the first count
+        "LD X1\nDMOV 7 C200\nLD X0\nDCNT C200 3\nLD C200\nOUT Y0",  # a value that was written
+        "LD X0\nDCNT C200 4\nLD X1\nDCNT C200 0\nLD C200\nOUT Y0",  # another preset
+    ],
+)
+def test_the_contact_of_a_counter_that_counts_up_above_its_preset_is_told(text):
+    machines, done = twins(text, "H2U", "EC20")
+    assert "a count upward from the preset or above puts it ON here and leaves it there" in done.report()
+    for plc in machines:
+        for terminal in ("X1", "X0"):
+            for level in (1, 0):
+                plc[terminal] = level
+                plc.scan(2)
+    assert [plc["Y0"] for plc in machines] == [1, 0]
+
+
 def test_a_loop_that_might_never_be_entered():
     """A count below 1 means once in FX and never in EC."""
     ec, fx = "LD SM0\nFOR {}\nLD SM0\nINC D0\nNEXT", "FOR {}\nLD M8000\nINC D0\nNEXT"
