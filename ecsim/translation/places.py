@@ -1,6 +1,6 @@
 """Where the devices of a program lie in the other family: timers by class, steps, special devices by meaning, the rest by number."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from ..assembler import Instruction, Program, Variable
@@ -229,17 +229,10 @@ class Places:
         pairs: dict[tuple[str, int], Instruction] = {}
         singles: dict[tuple[str, int], Instruction] = {}
         for instruction in self.program.instructions:
-            values = {
-                spec.name: operand.value
-                for spec, operand in zip(instruction.definition.operands, instruction.operands, strict=False)
-                if isinstance(operand, Constant)
-            }
-            for spec, operand in zip(instruction.definition.operands, instruction.operands, strict=False):
-                if not isinstance(operand, Device) or operand.area not in ("D", "SD") or spec.type.words < 1:
-                    continue
-                length = spec.length(values) or 1
-                for number in range(operand.number, operand.number + length * spec.type.words):
-                    (pairs if spec.type.words == 2 else singles).setdefault((operand.area, number), instruction)
+            for first, length, words in numbers_in(instruction):
+                if first.area in ("D", "SD"):
+                    for number in range(first.number, first.number + (length or 1) * words):
+                        (pairs if words == 2 else singles).setdefault((first.area, number), instruction)
         for (area, number), instruction in sorted(singles.items()):
             if (area, number) in pairs:
                 other = pairs[area, number]
@@ -254,6 +247,15 @@ class Places:
             first = min(pairs.values(), key=lambda instruction: instruction.line)
             order = "low word" if self.source.high_word_first else "high word"
             self.text.note(first.line, f"32-bit numbers lie in two registers with the {order} first")
+
+
+def numbers_in(instruction: Instruction) -> Iterator[tuple[Device, int | None, int]]:
+    """The numbers that an instruction reads or writes: their first device, how many they are (None: it is told in RUN), words of each."""
+    pairs = list(zip(instruction.definition.operands, instruction.operands, strict=False))
+    values = {spec.name: operand.value for spec, operand in pairs if isinstance(operand, Constant)}
+    for spec, operand in pairs:
+        if isinstance(operand, Device) and spec.type.words:
+            yield operand, spec.length(values), spec.type.words
 
 
 def constant(constant: Constant, target: Model, real: bool) -> str:

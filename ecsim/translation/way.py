@@ -6,7 +6,7 @@ from ..assembler import Instruction, Program
 from ..devices import Constant, Device
 from ..models import Model
 from ..values import REAL
-from .places import Places
+from .places import Places, numbers_in
 from .text import Line, Refusal, Text
 
 INPUTS = 6  # X0 to X5 ask for interrupts in both families
@@ -54,8 +54,11 @@ class Way:
         for other in self.program.instructions:
             if other.mnemonic == coil.mnemonic and other.operands[0] == device and _worth(other.operands[1]) != _worth(preset):
                 raise Refusal(f"{device} has another preset in line {other.line}", "count to one preset, and compare")
-            for spec, operand in zip(other.definition.operands, other.operands, strict=False):
-                if operand == device and spec.type.words and other.definition.form != "always":
+            for first, length, _ in numbers_in(other):
+                if other.definition.form == "always" and first is other.operands[0]:
+                    continue  # a coil
+                behind = device.number - first.number if first.area == device.area else -1
+                if behind == 0 or (behind > 0 and (length is None or behind < length)):
                     raise Refusal(f"{device} {words}, and line {other.line} looks at its value", hint)
 
     def _loop(self, instruction: Instruction, words: str) -> Line:

@@ -191,6 +191,9 @@ def test_the_report_names_what_one_of_the_models_alone_keeps_without_power():
         ("LD X0\nENCO D0 D1", 2, "ENCO D0 D1: H2U has nothing"),
         ("LD X0\nDMOV D0 D10\nMOV D1 D20", 3, "D1 is a 16-bit number in line 3 and part of a 32-bit one in line 2"),
         ("LD X0\nCTU C0 5\nLD X0\nMOV C0 D0", 2, "counts on beyond its preset, and line 4 looks at its value"),
+        ("LD X0\nCTU C2 5\nLD X0\nBMOV C0 D0 3", 2, "counts on beyond its preset, and line 4 looks at its value"),
+        ("LD X0\nCTU C2 5\nLD X0\nTON T0 C2", 2, "counts on beyond its preset, and line 4 looks at its value"),
+        ("LD X0\nCTU C2 5\nLD X0\nBMOV C0 D0 D9", 2, "counts on beyond its preset, and line 4 looks at its value"),
         ("LD X0\nCTU C0 5\nLD X1\nCTU C0 16#6", 2, "C0 has another preset in line 4"),
         ("LD X0\nCTU C0 0", 2, "with a preset below 1 the contact of C0 comes at once in EC"),
         ("LD X0\nOUT SM110", 2, "SM110 has no counterpart"),
@@ -205,6 +208,12 @@ def test_the_report_names_what_one_of_the_models_alone_keeps_without_power():
 def test_what_cannot_be_kept_is_refused(text, line, words):
     found = refusals(text)
     assert [(place, message) for place, message, _ in found if words in message and place == line], found
+
+
+def test_numbers_beside_a_counter_leave_it_alone():
+    text = "LD X0\nCTU C2 5\nLD X0\nBMOV C0 D0 2\nMOV C3 D9\nZRST C0 4\nRST C2"
+    assert "OUT C2 K5" in " ".join(translate(text, "H2U").text.split())
+    assert "CTU C2 5" in " ".join(translate("LD X0\nOUT C2 K5\nLD X1\nZRST C0 C4", "EC20", "H2U").text.split())
 
 
 def test_counters_of_fx_with_two_presets_are_refused_too():
