@@ -41,7 +41,7 @@ SOURCES = ROOT / "ecsim" / "instructions"
 PAGE = ROOT / "docs" / "mutation.md"
 NO_CHAPTER = {"__init__", "define", "signature", "spelling"}
 WORKERS = 2
-LIMIT_S = 20  # of the processor for all cases of a mutant; a run without end is noticed, too
+LIMIT_S = 60  # of the processor for all cases of a mutant; a run without end is noticed, too
 
 # Survivors that say the same as the original: a pattern of their names -> why no program can tell.
 EQUIVALENT = {
