@@ -407,7 +407,9 @@ class _Builder(Writer):
         self.done = True
 
     def _reaching(self) -> Callable[[bool], bool]:
-        """Whether a flow makes the instruction act that is being written: while it is ON, or when it rises."""
+        """Whether a flow makes the instruction act that is being written: while it is ON, when it rises, or on the bus always."""
+        if self.instruction.definition.bus:
+            return lambda _: True
         if self.instruction.pulse < 0:
             return bool
         kept, slot = self.engine.memory.lists["E"], self.instruction.pulse
