@@ -56,7 +56,7 @@ EQUIVALENT = {
     r"communication\.modbus: octets\.ljust\(7, .* -> octets\.ljust\(8, .*": "the length is told by the first seven bytes",
     r"communication\.(xmt|rcv): faults=.*": "what a span of devices raises is caught anyway; the column then serves the help page alone",
     r"contacts\.rst: resets=True -> nothing": "RST clears in its own way; the column serves the chart and spans of devices",
-    r"(flow\.next_|sfc\.ret|master_control\.mcr): code\.close\(\) -> nothing": "no engine writes anything there, the program's structure tells where it ends",
+    r"(flow\.next_|sfc\.ret|master_control\.mcr|fx_basic\.mcr): code\.close\(\) -> nothing": "no engine writes anything there, the program's structure tells where it ends",
     r"sfc\.stl: code\.step\(\) -> nothing": "no engine writes anything there, the program's structure tells where it begins",
     r"transfer\.check: strings\[-?[01]\] -> .*\(2\)": "the words of the message",
     r"shifts\.shl: min\(s2, 32\) -> min\(s2, 33\)": "of 32 bits nothing is left after 32 places",
@@ -77,6 +77,12 @@ EQUIVALENT = {
     r"fx_move\._from_the_left: min\(m1, n\) -> max\(m1, n\) \(2\)": "the words of the message",
     r"fx_(move|shifts)\.: as_stored=True -> as_stored=False": "what comes out of registers fits into them",
     r"fx_shifts\.: (enumerate\(|\(5, 9\) -> |strict=).*": "sections and lengths; there are as many functions as widths",
+    r"fx_basic\._preset: .* -> 0 <= preset <= 32768": "no constant of 16 bits is larger than 32767",
+    r"fx_handy\.ist: .* -> .*D2:POINT\[S\]=(19|21)\.\.899 .*": "D2 is above D1, which is 20 at least",
+    r"fx_handy\.ist: \(STEP, CYCLE\) -> .*": "the order in which a mode is looked for",
+    r"fx_handy\.absd: strict=True -> strict=False": "the table has two values for each bit",
+    r"fx_handy\.(ttmr|rotc): state\[0\] -> state\[-1\]": "the state is a tuple of one element",
+    r"fx_handy\.stmr: \(False, now, False\) -> \((True, now, False|False, now, True)\)": "it begins with flow, now, and nothing is late then",
     r"fx_ascii\._round_numbers: \(source, target\) -> \(target, source\)": "the words of the message, where both are wrong",
     r"highspeed\.(spd|dhsz): faults=.*": "what a span of devices raises is caught anyway; the column then serves the help page alone",
     r"highspeed\.pls: 0 <= first <= (.*) -> -1 <= first <= .*": "the number is read without sign",
@@ -97,7 +103,7 @@ COMPARISONS = {
 }  # fmt: skip
 CALLS = {"min": "max", "max": "min", "floor": "ceil", "sin": "cos", "cos": "sin", "tan": "sin", "log": "exp", "exp": "log"}
 WORDS = {"and": "or", "or": "and", "set": "reset", "reset": "set", "outputs": "data", "data": "outputs"}
-BEHAVIOUR = {"cleared", "resets", "rising", "check", "counted", "occupies", "bus"}  # columns whose loss a program may feel
+BEHAVIOUR = {"cleared", "released", "resets", "rising", "check", "counted", "occupies", "bus"}  # columns whose loss a program may feel
 
 
 @dataclass

@@ -261,6 +261,8 @@ class Page(Shown):
             facts.append("needs inputs for itself (manual 8.5)")
         if row.cleared:
             facts.append("cleared when its master control is OFF and when its step has been left")
+        if row.released:
+            facts.append("without flow when its master control is OFF and when its step has been left")
         family = [other.mnemonic for other in OWN.values() if other.function is row.function and other is not row]
         return (*facts, *([f"relatives with the same meaning: {', '.join(family)}"] if family else []))
 

@@ -511,11 +511,11 @@ class Writer:
         return [*self.access.store(BOOL, d, edge), f"{was} = {flow}"]
 
     def clear_lines(self, unit: Unit, region: Region) -> list[str]:
-        """What is cleared when a region is left: the destinations of OUT, TON, TOF ... inside (5.2.1, 5.3.1)."""
+        """What is cleared when a region is left: the destinations of OUT, TON, TOF ... inside (5.2.1, 5.3.1), and claims."""
         blocks: dict[tuple[str, ...], None] = {}  # each once, in order
         for instruction in unit.instructions[region.opening + 1 : region.closing]:
             handed_on = instruction.definition.transition_steps and instruction.operands[0].area == "S"
-            if instruction.definition.cleared and not (region.kind == "STL" and handed_on):
+            if (instruction.definition.cleared or instruction.definition.released) and not (region.kind == "STL" and handed_on):
                 blocks |= dict.fromkeys(self._erasures(instruction))
         return [line for block in blocks for line in block]
 
@@ -527,7 +527,8 @@ class Writer:
             lines = self.result_lines(instruction, "False")
             return [("try:", *indented(lines), "except Fault:", f"{INDENT}pass") if self._may_fault(instruction) else (*lines,)]
         if definition.claims:
-            return [(f"if E[{instruction.slot}]:", *indented(self._release(instruction))), *self._unit_erasures(instruction)]
+            gone = (f"if E[{instruction.slot}]:", *indented(self._release(instruction)))
+            return [gone, *(self._unit_erasures(instruction) if definition.cleared else ())]
         written = [(spec, operand) for spec, operand in zip(definition.operands, instruction.operands, strict=True) if spec.written]
         if definition.form == "always":
             return [(*self.access.reset(device),) for spec, device in written if not spec.unit]  # an annunciator stays

@@ -39,6 +39,7 @@ class Definition:
     given: tuple[str, ...] = ()  # flags and state that the function returns itself, after its values
     models: tuple[str, ...] = BOTH
     cleared: bool = False  # its destination is cleared when its MC is OFF or its step has been left (5.2.1, 5.3.1)
+    released: bool = False  # there only its claim is released: what it has written stays (FX)
     application: bool = False  # of chapter 6, or with a function number: executed correctly it clears SM20 and SM22, or M8067
     as_stored: bool = False  # numbers go in and out as registers hold them: nothing to mask, nothing to wrap
     restarts: bool = False  # beyond a limit the result goes on from 0 with the limit's sign, rather than from the other limit (FNC 20)

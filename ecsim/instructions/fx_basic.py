@@ -54,7 +54,6 @@ def timer_coil(flow, timer, preset):
         if timer.value >= preset:
             timer.value = preset
             timer.contact = True
-        timer.watch(preset, None)
     else:
         timer.contact = False
         timer.value = timer.due = 0
@@ -71,7 +70,6 @@ def timer_coil_with_register(flow, timer, preset, state):
         if timer.value >= state.was:
             timer.value = state.was
             timer.contact = True
-        timer.watch(state.was, None)
     else:
         timer.contact = False
         timer.value = timer.due = 0
@@ -141,7 +139,7 @@ def double_counter_coil(flow, counter, preset, state):
 
 
 command(
-    "FX:OUT C235", "claim >D:HCOUNTER S:DINT[const D]!", steps=5, section="3.6", models=FX, cleared=True, pulsed=False,
+    "FX:OUT C235", "claim >D:HCOUNTER S:DINT[const D]!", steps=5, section="3.6", models=FX, released=True,
     faults=(OPERAND,), occupies=counter_inputs,
 )(hcnt)  # fmt: skip
 

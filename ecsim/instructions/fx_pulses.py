@@ -8,7 +8,7 @@ from .define import FX, H2U, command
 from .highspeed import dhsci, dhscr, dhscs, dhsz, plsr, plsy, spd
 from .positioning import drva, drvi, plsv, read_position, zrn
 
-_COUNTED = {"cleared": True, "faults": (OPERAND,), "models": FX}
+_COUNTED = {"released": True, "faults": (OPERAND,), "models": FX}
 _MOVES = {"faults": (OPERAND,), "models": FX}
 
 
@@ -19,13 +19,13 @@ def reff(machine, milliseconds):
     machine.inputs.refresh(machine.clock[0], range(8))
 
 
-_COMPARED = {"cleared": True, "models": FX, "steps": 13}
-command("FX:DHSCS", "claim S1:DINT S2:HCOUNTER >D:POINT[Y M S]", section="FNC 53", **_COMPARED)(dhscs)
-command("FX:DHSCS I", "claim S1:DINT S2:HCOUNTER D:EVENT", section="FNC 53", **_COMPARED)(dhsci)
-command("FX:DHSCR", "claim S1:DINT S2:HCOUNTER >D:POINT[Y M S]", section="FNC 54", **_COMPARED)(dhscr)
-command("FX:DHSZ", "claim S1:DINT S2:DINT S:HCOUNTER >D:POINT[Y M S]*3", section="FNC 55", **(_COMPARED | {"models": H2U, "steps": 17}))(
-    dhsz
-)
+_COMPARED = {"released": True, "models": FX}
+command("FX:DHSCS", "claim S1:DINT S2:HCOUNTER >D:POINT[Y M S]", steps=13, section="FNC 53", **_COMPARED)(dhscs)
+command("FX:DHSCS I", "claim S1:DINT S2:HCOUNTER D:EVENT", steps=13, section="FNC 53", **_COMPARED)(dhsci)
+command("FX:DHSCR", "claim S1:DINT S2:HCOUNTER >D:POINT[Y M S]", steps=13, section="FNC 54", **_COMPARED)(dhscr)
+command(
+    "FX:DHSZ", "claim S1:DINT S2:DINT S:HCOUNTER >D:POINT[Y M S]*3", steps=17, section="FNC 55", released=True, models=H2U
+)(dhsz)  # fmt: skip
 command(
     "FX:SPD", "claim S1:POINT[X]=0..5 S2:WORD >D:PLACE[T C D]*3", steps=7, section="FNC 56",
     occupies=lambda model, operands: (operands[0].number,), **_COUNTED,
