@@ -4,6 +4,7 @@ What is scanned takes its time in scans or, where that is said, in milliseconds;
 other are part of the output image, and the answer at the inputs is seen in the scan after it, behind the filter later.
 """
 
+from ..devices import Device
 from ..errors import NO_ANSWER, NO_BUFFER, NO_MODULE, OPERAND, Fault
 from ..values import join, split
 from .conversion import SEGMENTS
@@ -15,9 +16,19 @@ _NUMBER = "KnY KnM KnS T C D V Z"
 _MODULE = {"models": FX, "faults": (NO_MODULE, NO_ANSWER, NO_BUFFER)}
 
 
-def _rows(source, strobes, target, count):
+def _apart(target):
+    """How far the rows stand apart."""
+    return 8 if target.area == "Y" else 10
+
+
+def _rows(model, source, strobes, target, count):
     wrong = next((each for each in (source, strobes, target) if each.number % (10 if each.area in "MS" else 8)), None)
-    return f"{wrong} does not end in 0" if wrong is not None else None
+    if wrong is not None:
+        return f"{wrong} does not end in 0"
+    kept = model.read_only_relays if target.area == model.special_bits else ()
+    taken = [target.number + _apart(target) * row + column for row in range(count) for column in range(8)]
+    gone = next((number for number in taken if not model.areas[target.area].has(number) or number in kept), None)
+    return f"{count} rows from {target} on need {Device(target.area, gone)}, which no program can write" if gone is not None else None
 
 
 @command(
@@ -35,12 +46,8 @@ def mtr(flow, s, target, n, machine, now, state):
     row, since, put_out = state or (0, now, False)
     done, waited = False, bool(state)
     if put_out and now - since >= ROW_US:
-        apart = 8 if target.area == "Y" else 10
-        first = target.number + apart * row
-        bits = machine.memory.bits(target.area)
-        if first + 8 > len(bits):
-            raise Fault(OPERAND)
-        bits[first : first + 8] = s
+        first = target.number + _apart(target) * row
+        machine.memory.bits(target.area)[first : first + 8] = s
         row, since, waited, done = (row + 1) % n, now, False, row + 1 == n
     return [each == row for each in range(n)], done, (row, since, waited)
 
@@ -92,14 +99,15 @@ def _sixteen_keys(flow, s, d2, d3, hexadecimal, state, digits):
         done = row == 0
     if done:
         key = held if held in found else min(found, default=None)
+        letters = d3[:6]
         if key is not None and key != held:
             if hexadecimal:
-                d2 = (d2 << 4 | key) & (1 << 4 * digits) - 1
+                d2 = d2 << 4 | key  # what is above the bits of D2 falls away
             elif key < 10:
                 d2 = _typed(d2, key, digits)
             if key >= 10:
-                d3 = [*(each == key for each in range(10, 16)), *d3[6:]]
-        d3 = [*d3[:6], key is not None and key >= 10, key is not None and key < 10]
+                letters = [each == key for each in range(10, 16)]
+        d3 = [*letters, key is not None and key >= 10, key is not None and key < 10]
         found, held = (), key
     return [each == row for each in range(4)], d2, d3, done, ((scan + 1) % 8, found, held)
 

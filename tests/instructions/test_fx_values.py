@@ -288,3 +288,15 @@ def test_times_add_subtract_and_compare(running, first, second):
     assert length([plc[f"D{n}"] for n in (13, 14, 15)]) == difference % DAY
     assert [plc["M1"], plc["M2"]] == [total >= DAY, difference < timedelta(0)]
     assert [plc[f"M{n}"] for n in (10, 11, 12)] == [first > second, first == second, first < second]
+
+
+# -- potentiometers --------------------------------------------------------------------------------------------------
+
+
+def test_vrsc_takes_the_nearest_of_eleven_marks(running):
+    plc = running(f"{ON}VRSC K7 D0\nVRRD K7 D1", "H2U")
+    plc.pots.values = [0] * 8  # the base unit has none of its own
+    for stands in range(256):
+        plc.pots[7] = stands
+        plc.scan()
+        assert (plc["D0"], plc["D1"]) == (min(range(11), key=lambda mark: abs(mark * 255 - stands * 10)), stands)
