@@ -39,6 +39,7 @@ class ToEC(Way):
 
     masks: ClassVar[dict[int, int]] = {there: here for here, there in MASKS.items()}
     says = "forbids an event"
+    leaves = "is cleared there and stays here"
 
     def __init__(self, program: Program, target: Model, places: Places, text: Text):
         super().__init__(program, target, places, text)
@@ -77,6 +78,7 @@ class ToEC(Way):
                 continue
             if self._is_head(unit, place):
                 continue
+            self._tell_of_leaving(unit, place)
             self.more = place + 1 < len(instructions) and instructions[place + 1].definition.outputs  # the flow is needed again
             try:
                 if instruction.mnemonic in NOTES:

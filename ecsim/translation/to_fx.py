@@ -46,6 +46,7 @@ class ToFX(Way):
 
     masks = MASKS
     says = "lets an event ask"
+    leaves = "stays there and is cleared here"
 
     def __init__(self, program: Program, target: Model, places: Places, text: Text):
         super().__init__(program, target, places, text)
@@ -107,6 +108,7 @@ class ToFX(Way):
             open_blocks -= instruction.mnemonic in ("ANB", "ORB")
             branches += (instruction.mnemonic == "MPS") - (instruction.mnemonic == "MPP")
             title = unit.titles.get(place, "")
+            self._tell_of_leaving(unit, place)
             try:
                 if instruction.mnemonic in NOTES:
                     self.text.note(instruction.line, NOTES[instruction.mnemonic].format(name=instruction.mnemonic))

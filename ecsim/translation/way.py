@@ -2,7 +2,7 @@
 
 from typing import ClassVar
 
-from ..assembler import Instruction, Program
+from ..assembler import Instruction, Program, Region, Unit
 from ..devices import Constant, Device
 from ..models import Model
 from ..values import REAL
@@ -20,11 +20,20 @@ def _worth(operand):
     return operand.value if isinstance(operand, Constant) else operand
 
 
+def _left(nodes: list, place: int) -> bool:
+    """Whether the instruction at a place stands in an MC or a step."""
+    return any(
+        isinstance(node, Region) and node.opening < place < node.closing and (node.kind != "FOR" or _left(node.nodes, place))
+        for node in nodes
+    )
+
+
 class Way:
     """A program of one family in the words of the other, instruction by instruction."""
 
     masks: ClassVar[dict[int, int]]  # number of a relay here -> there
     says: ClassVar[str]  # what such a relay does here while it is ON
+    leaves: ClassVar[str]  # what becomes of what high-speed instructions have written where MC goes OFF or a step is left
 
     def __init__(self, program: Program, target: Model, places: Places, text: Text):
         self.program, self.source, self.target, self.places, self.text = program, program.model, target, places, text
@@ -38,6 +47,14 @@ class Way:
             self.places.operand(operand, written, real=spec.type is REAL)
             for spec, operand, written in zip(specs, instruction.operands, instruction.written, strict=True)
         )
+
+    def _tell_of_leaving(self, unit: Unit, place: int) -> None:
+        """EC clears the destinations of high-speed instructions where MC goes OFF or a step is left, FX keeps them."""
+        instruction = unit.instructions[place]
+        row = instruction.definition
+        keeps_or_clears = row.claims and (row.cleared or row.released) and any(s.written and s.kind != "PULSE" for s in row.operands)
+        if keeps_or_clears and _left(unit.nodes, place):
+            self.text.note(instruction.line, f"{instruction.name}: where MC goes OFF or a step is left, its result {self.leaves}")
 
     def _counter(self, coil: Instruction, words: str, hint: str = "") -> None:
         """EC's counter goes on beyond its preset and its contact is compared in each scan; FX's stops there and its contact stays.

@@ -223,6 +223,27 @@ def test_counters_of_fx_with_two_presets_are_refused_too():
 
 
 @pytest.mark.parametrize(
+    ("to", "model", "text", "word"),
+    [
+        ("H2U", "EC20", "LD X7\nMC 0\nLD SM0\nHCNT C236 9\nMCR 0", "HCNT: where MC goes OFF or a step is left, its result stays there"),
+        (
+            "EC20",
+            "H2U",
+            "LD X7\nMC N0 M9\nLD M8000\nSPD X0 K100 D0\nMCR N0",
+            "SPD: where MC goes OFF or a step is left, its result is cleared",
+        ),
+        ("EC20", "H2U", "LD M8002\nSET S0\nSTL S0\nFOR K2\nLD X7\nOUT C235 K9\nNEXT\nRET", "OUT: where MC goes OFF or a step is left"),
+        ("H2U", "EC20", "LD SM0\nHCNT C236 9", ""),
+        ("EC20", "H2U", "LD X7\nMC N0 M9\nLD M8000\nPLSY K100 K5 Y0\nMCR N0", ""),
+    ],
+)
+def test_what_leaving_does_to_high_speed_results_is_told(to, model, text, word):
+    told = [str(difference.what) for difference in translate(text, to, model).differences if "is left, its result" in difference.what]
+    assert len(told) == bool(word)
+    assert not word or word in told[0]
+
+
+@pytest.mark.parametrize(
     ("to", "model", "coil", "direction"), [("H2U", "EC20", "DCNT C200 2", "SM200"), ("EC20", "H2U", "OUT C200 K2", "M8200")]
 )
 def test_the_contact_of_a_counter_that_counts_down_goes_off_one_count_apart(to, model, coil, direction):
