@@ -525,6 +525,9 @@ class Writer:
         self.known.forget()
         if definition.assigns:  # the bit of a word: executed without flow; one that cannot be reached needs no clearing
             lines = self.result_lines(instruction, "False")
+            if definition.after:  # a command that is not at work has nothing to end
+                lines = [f"if E[{instruction.slot}]:", *indented(lines)]
+                self.known.forget()
             return [("try:", *indented(lines), "except Fault:", f"{INDENT}pass") if self._may_fault(instruction) else (*lines,)]
         if definition.claims:
             gone = (f"if E[{instruction.slot}]:", *indented(self._release(instruction)))

@@ -33,7 +33,7 @@ def _rows(model, source, strobes, target, count):
 
 @command(
     "FX:MTR", "S:BOOL[X]*8 >D1:BOOL[Y]*N >D2:POINT[Y M S] N:INT[const]=2..8 machine now state -> complete state",
-    steps=9, section="FNC 52", models=FX, check=_rows,
+    steps=9, section="FNC 52", models=FX, cleared=True, check=_rows,
 )  # fmt: skip
 def mtr(flow, s, target, n, machine, now, state):
     """Read N rows of eight switches: each output from D1 on is ON for 20 ms, then the inputs from S on go to the bits of its row.
@@ -67,7 +67,10 @@ def _ten_keys(flow, s, d1, state, digits):
     return d1, [*(key == latched for key in range(10)), held is not None], (held, latched)
 
 
-@command("FX:TKY", f"S:BOOL[X Y M S]*10 D1:INT[{_NUMBER}] >D2:BOOL[Y M S]*11 state -> D1 state", steps=7, section="FNC 70", models=H2U)
+@command(
+    "FX:TKY", f"S:BOOL[X Y M S]*10 D1:INT[{_NUMBER}] >D2:BOOL[Y M S]*11 state -> D1 state",
+    steps=7, section="FNC 70", models=H2U, cleared=True,
+)  # fmt: skip
 def tky(flow, s, d1, state):
     """Type a number of up to four digits on the ten keys from S on: it stands in D1, the last key among the bits D2 to D2+9.
 
@@ -77,8 +80,9 @@ def tky(flow, s, d1, state):
 
 
 @command(
-    "FX:DTKY", "S:BOOL[X Y M S]*10 D1:DINT[KnY KnM KnS C D V] >D2:BOOL[Y M S]*11 state -> D1 state", steps=13, section="FNC 70", models=H2U
-)
+    "FX:DTKY", "S:BOOL[X Y M S]*10 D1:DINT[KnY KnM KnS C D V] >D2:BOOL[Y M S]*11 state -> D1 state",
+    steps=13, section="FNC 70", models=H2U, cleared=True,
+)  # fmt: skip
 def dtky(flow, s, d1, state):
     """As TKY, for a number of up to eight digits."""
     return _ten_keys(flow, s, d1, state, 8)
@@ -114,7 +118,7 @@ def _sixteen_keys(flow, s, d2, d3, hexadecimal, state, digits):
 
 @command(
     "FX:HKY", "S:BOOL[X]*4 >D1:BOOL[Y]*4 D2:INT[T C D V Z] D3:BOOL[Y M S]*8 hexadecimal state -> D2 D3 complete state",
-    steps=9, section="FNC 71", models=H2U,
+    steps=9, section="FNC 71", models=H2U, cleared=True,
 )  # fmt: skip
 def hky(flow, s, d2, d3, hexadecimal, state):
     """Read a keypad of sixteen keys, four rows led by the outputs from D1 on, four columns at the inputs from S on, in eight scans.
@@ -127,7 +131,7 @@ def hky(flow, s, d2, d3, hexadecimal, state):
 
 @command(
     "FX:DHKY", "S:BOOL[X]*4 >D1:BOOL[Y]*4 D2:DINT[C D V] D3:BOOL[Y M S]*8 hexadecimal state -> D2 D3 complete state",
-    steps=17, section="FNC 71", models=H2U,
+    steps=17, section="FNC 71", models=H2U, cleared=True,
 )  # fmt: skip
 def dhky(flow, s, d2, d3, hexadecimal, state):
     """As HKY, for a number of up to eight digits."""
@@ -136,7 +140,7 @@ def dhky(flow, s, d2, d3, hexadecimal, state):
 
 @command(
     "FX:DSW", "S:BOOL[X]*{4*N} >D1:BOOL[Y]*4 D2:INT[T C D V Z]*N N:INT[const]=1..2 now state -> D2 complete state",
-    steps=9, section="FNC 72", models=FX, faults=(OPERAND,),
+    steps=9, section="FNC 72", models=FX, cleared=True, faults=(OPERAND,),
 )  # fmt: skip
 def dsw(flow, s, d2, n, now, state):
     """Read N sets of four digit switches at the inputs from S on into D2 and D2+1, a digit in each tenth of a second.
@@ -179,7 +183,7 @@ def _display(numbers, n, scan):
 
 @command(
     "FX:SEGL", "S:INT*{2 if N>3 else 1} >D:BOOL[Y]*{12 if N>3 else 8} N:INT[const]=0..7 state -> complete state",
-    steps=7, section="FNC 74", models=FX, faults=(OPERAND,),
+    steps=7, section="FNC 74", models=FX, cleared=True, faults=(OPERAND,),
 )  # fmt: skip
 def segl(flow, s, n, state):
     """Show S, 0 to 9999, on a display of four digits with latches: four bits of a digit from D on, its strobe from D+4 on, in twelve scans.
@@ -197,7 +201,7 @@ def segl(flow, s, n, state):
 
 @command(
     "FX:ARWS", "S:BOOL[X Y M S]*4 D1:INT[T C D V Z] >D2:BOOL[Y]*8 N:INT[const]=0..3 state -> D1 state",
-    steps=9, section="FNC 75", models=H2U, faults=(OPERAND,),
+    steps=9, section="FNC 75", models=H2U, cleared=True, faults=(OPERAND,),
 )  # fmt: skip
 def arws(flow, s, d1, n, state):
     """Set the four digits of D1 with four keys from S on (down, up, to the right, to the left), and show them as SEGL does.
@@ -219,7 +223,8 @@ def arws(flow, s, d1, n, state):
 
 
 @command(
-    "FX:PR", "S:WORD[T C D]*{8 if sixteen else 4} >D:BOOL[Y]*10 sixteen state -> complete state", steps=5, section="FNC 77", models=H2U
+    "FX:PR", "S:WORD[T C D]*{8 if sixteen else 4} >D:BOOL[Y]*10 sixteen state -> complete state",
+    steps=5, section="FNC 77", models=H2U, cleared=True,
 )  # fmt: skip
 def pr(flow, s, sixteen, state):
     """Print eight characters, two in each word from S on: eight bits from D on, then the strobe, and D+9 while it is at work.
