@@ -1,4 +1,6 @@
-// The sequential function chart: active steps lit, what the selected one waits for in words, and the log of steps taken.
+// The sequential function chart: active steps lit, what the selected one waits for in words, and the log of steps taken. Python lays
+// it out for the width that there is and tells where every step stands; the page tells which bands of the sheet it looks at, those
+// near sight too, and gets their drawings and values. Only bands in and near sight are elements of the page.
 
 const ZOOMS = [0.5, 0.67, 0.8, 1, 1.25, 1.5];
 
@@ -28,8 +30,11 @@ panels.chart = (place, layout, page, view) => {
   const main = body.querySelector(".main");
   const [who, facts, log] = [".who", ".facts", ".log"].map((part) => body.querySelector(part));
   const fired = body.querySelector(".fires");
-  const boxes = new Map(); // step -> its element, for those that are drawn
+  const boxes = new Map(); // step -> its element, of those that are in the page
+  const bands = new Map(); // number from 0 -> { node, markup }, of those that are elements of the page
+  const places = Object.keys(layout.steps); // the place of each step among all
   let drawing;
+  let sheet = { bands: [], steps: {} }; // from where to where each band reaches; each step's left, top and band; in px
   let state = {};
   let chosen = null; // null follows the active step
 
@@ -37,9 +42,9 @@ panels.chart = (place, layout, page, view) => {
 
   const id = Math.random().toString(36).slice(2, 10);
   let zoom = view.chartZoom ?? 1;
-  let seen = null; // the heights that Python was told of
+  let near = null; // the first and last band of those in and near sight
+  let seen = ""; // the bands that Python was told of
   let watched; // the step that was brought into view last
-  let strips = []; // what the drawing is made of, with the heights between which each strip lies
   const followed = section.querySelector('[data-act="follow"]');
   const follows = () => followed.getAttribute("aria-pressed") === "true";
   for (const hand of ["wheel", "touchmove"]) main.addEventListener(hand, () => set(followed, "aria-pressed", "false"), { passive: true });
@@ -58,35 +63,85 @@ panels.chart = (place, layout, page, view) => {
     main.scrollTo(x * zoom - main.clientWidth / 2, y * zoom - main.clientHeight / 2);
     soon();
   }
+  // The first and last band that reach into some heights of the sheet.
+  function reaching(top, bottom) {
+    const numbers = sheet.bands.flatMap(([from, to], number) => (to >= top && from <= bottom ? [number] : []));
+    return [numbers[0] ?? 0, numbers.at(-1) ?? 0];
+  }
+  // Tells Python about what is in sight and as much above and below, again as soon as less than half of that is left.
   function look() {
     track();
     const [top, high] = [main.scrollTop / zoom, main.clientHeight / zoom];
     if (!drawing || !high) return;
-    const end = drawing.svg.viewBox.baseVal.height;
-    if (seen && Math.max(0, top - high / 2) >= seen[0] && Math.min(end, top + 1.5 * high) <= seen[1]) return;
-    // What begins above the edge of the view reaches into it.
-    seen = [Math.max(0, Math.floor(top - high - 300)), Math.min(end, Math.ceil(top + 2 * high))];
-    bare();
-    page.say("chart", "see", { view: id, top: seen[0], bottom: seen[1] });
-  }
-  // Of a large drawing the browser lays out and paints only what is near the view.
-  function bare() {
-    for (const strip of strips) {
-      const hidden = strip.bottom < seen[0] || strip.top > seen[1];
-      if (hidden === strip.hidden || (hidden && strip.node.contains(document.activeElement))) continue;
-      strip.hidden = hidden;
-      strip.node.style.display = hidden ? "none" : "";
+    const spare = Math.min(high, SPARE_PX / zoom);
+    const [first, last] = reaching(top - spare / 2, top + high + spare / 2);
+    if (!near || first < near[0] || last > near[1]) {
+      near = reaching(top - spare, top + high + spare);
+      furnish();
     }
+    if (page.dead || seen === String(near)) return;
+    seen = String(near);
+    page.say("chart", "see", { view: id, first: near[0], last: near[1] });
+  }
+  const alive = (number) => (state.live ?? []).includes(number); // whether the state has its values
+  // Makes elements of the bands in and near sight that are alive, and of no others; what has the focus stays.
+  function furnish() {
+    if (!near) return;
+    const wanted = (number) => number >= near[0] && number <= near[1] && alive(number);
+    for (const [number, { node }] of bands) if (!wanted(number) && !node.contains(document.activeElement)) remove(number);
+    let fresh = false;
+    for (let number = near[0]; number <= near[1]; number++) {
+      const markup = wanted(number) && state[`band.${number}`];
+      if (!markup || bands.get(number)?.markup === markup) continue;
+      add(number, markup);
+      fresh = true;
+    }
+    if (!fresh) return;
+    drawing.apply(state);
+    mark();
+    stop();
+  }
+  function add(number, markup) {
+    remove(number);
+    const node = drawing.add(markup, [...bands].filter(([other]) => other > number).sort(([a], [b]) => a - b)[0]?.[1].node);
+    drawing.still(node);
+    bands.set(number, { node, markup });
+    for (const step of node.querySelectorAll(".step")) {
+      const device = step.dataset.device;
+      const [left, top] = sheet.steps[device];
+      boxes.set(device, step);
+      Object.assign(step.dataset, { testid: `step-${device}`, row: top, col: left });
+      const words = { role: "treeitem", tabindex: "-1", "aria-setsize": places.length, "aria-posinset": places.indexOf(device) + 1 };
+      for (const [name, value] of Object.entries(words)) set(step, name, value);
+      step.addEventListener("click", () => choose(device));
+    }
+  }
+  function remove(number) {
+    const node = bands.get(number)?.node;
+    if (!node) return;
+    for (const step of node.querySelectorAll(".step")) boxes.delete(step.dataset.device);
+    drawing.remove(node);
+    bands.delete(number);
+  }
+  // One stop of Tab: the step that the words at the side are about, else the first in the page.
+  function stop() {
+    if (main.querySelector('.step[tabindex="0"]')) return;
+    const step = boxes.get(shown()) ?? main.querySelector(".step");
+    if (step) step.tabIndex = 0;
   }
   const soon = () => work.look(look);
   main.addEventListener("scroll", soon, { passive: true });
   const room = new ResizeObserver(soon);
   room.observe(main);
   function track() {
-    const step = (state.active ?? []).find((device) => boxes.has(device));
-    if (!follows() || !step || step === watched) return;
+    const step = (state.active ?? []).find((device) => device in sheet.steps);
+    if (!follows() || !step || step === watched || (page.dead && !alive(sheet.steps[step][2]))) return;
     watched = step;
-    const [x, y] = [Number(boxes.get(step).dataset.col) * zoom, Number(boxes.get(step).dataset.row) * zoom]; // it may not be laid out
+    bring(step);
+  }
+  // Scrolls until a step can be seen, whether it is in the page or not.
+  function bring(step) {
+    const [x, y] = sheet.steps[step].map((each) => each * zoom);
     const [wide, high] = [60 * zoom, 44 * zoom];
     if (y < main.scrollTop || y + high > main.scrollTop + main.clientHeight) main.scrollTop = y - (main.clientHeight - high) / 2;
     const left = main.scrollWidth > main.clientWidth ? 0 : (main.clientWidth - drawing.svg.viewBox.baseVal.width * zoom) / 2;
@@ -94,36 +149,30 @@ panels.chart = (place, layout, page, view) => {
   }
   section.querySelector(".zoom").addEventListener("click", (event) => event.target.dataset.zoom && magnify(Number(event.target.dataset.zoom)));
 
-  function draw(svg) {
+  function draw() {
     const [left, top] = [main.scrollLeft, main.scrollTop];
-    drawing = new Drawing(main, svg).still();
+    const focused = main.contains(document.activeElement) ? document.activeElement.dataset.device : undefined;
+    sheet = state.sheet;
+    bands.clear();
+    boxes.clear();
+    drawing = new Drawing(main, sheet.svg);
     set(drawing.svg, "role", "none"); // the tree is around it
-    drawing.apply(state);
     scale();
     main.scrollTo(left, top);
-    strips = [...drawing.svg.children].flatMap((node) => {
-      const box = node.getBBox?.();
-      return box?.height || box?.width ? [{ node, top: box.y, bottom: box.y + box.height, hidden: false }] : [];
-    });
-    seen = null;
-    watched = undefined;
-    boxes.clear();
-    for (const [device, step] of Object.entries(layout.steps)) {
-      const node = drawing.find(device);
-      if (!node) continue;
-      boxes.set(device, node);
-      const box = node.querySelector(".box");
-      node.dataset.testid = `step-${device}`;
-      node.dataset.row = Math.round(box.getAttribute("y"));
-      node.dataset.col = Math.round(box.getAttribute("x"));
-      node.setAttribute("role", "treeitem");
-      node.setAttribute("tabindex", boxes.size === 1 ? "0" : "-1");
-      node.addEventListener("click", () => choose(device));
-    }
-    mark();
+    [near, seen, watched] = [null, "", undefined];
+    look();
+    boxes.get(focused)?.focus({ preventScroll: true });
   }
   main.setAttribute("role", "tree");
   main.setAttribute("aria-label", "Steps");
+  // A step that has the focus may have been scrolled far away: the arrows go on from there.
+  main.addEventListener("keydown", (event) => {
+    const step = event.target.dataset?.device;
+    const band = sheet.steps[step]?.[2];
+    if (!event.key.startsWith("Arrow") || !near || band === undefined || (band >= near[0] && band <= near[1])) return;
+    bring(step);
+    look();
+  });
   roving(main, () => [...boxes.values()]);
   main.addEventListener("keydown", (event) => {
     const device = event.target.dataset?.device;
@@ -205,8 +254,12 @@ panels.chart = (place, layout, page, view) => {
   return {
     apply(changes, now) {
       state = now;
-      if (changes.svg) draw(changes.svg);
-      else drawing?.apply(changes);
+      if (changes.sheet) draw();
+      else {
+        if (changes.live || Object.keys(changes).some((key) => key.startsWith("band."))) furnish();
+        // What is no more told of is out of sight; a step that has the focus there stays as it was.
+        drawing?.apply(Object.fromEntries(Object.entries(changes).filter(([, value]) => value !== null)));
+      }
       if ("held" in changes) {
         set(section.querySelector('[data-act="hold"]'), "aria-pressed", String(Boolean(state.held)));
         set(section, "data-held", state.held ? "" : null);
@@ -216,7 +269,7 @@ panels.chart = (place, layout, page, view) => {
         write(sub, `${changes.active.length} of ${Object.keys(layout.steps).length} active`);
         mark();
       }
-      if (changes.active || changes.svg) soon();
+      if (changes.active || changes.sheet) soon();
       explain();
       if (changes.log)
         pieces(
@@ -227,8 +280,12 @@ panels.chart = (place, layout, page, view) => {
     rest(dead) {
       sizes.rest(dead);
       explain();
-      seen = null;
-      soon();
+      if (!dead) return soon();
+      seen = "";
+      // Only the bands that were looked at lately are there; opened again, it shows those that were looked at last.
+      const [first, last] = reaching(main.scrollTop / zoom, (main.scrollTop + main.clientHeight) / zoom);
+      const looked = (state.looked ?? []).filter(alive);
+      if (looked.length && !looked.some((number) => number >= first && number <= last)) main.scrollTop = sheet.bands[looked[looked.length >> 1]][0] * zoom;
     },
     close() {
       page.say("chart", "unsee", { view: id });

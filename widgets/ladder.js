@@ -2,8 +2,6 @@
 // lies; the page tells which networks it looks at, those near sight too, and gets their drawings and values. Drawings of networks
 // that it has looked at lately stay in the state; only those in and near sight are elements of the page. An element that is chosen can be written and forced, can have a breakpoint, and tells where its device is used.
 
-const SPARE_PX = 800; // at most so much above and below what is in sight
-
 panels.ladder = (place, layout, page, view) => {
   const { section, body, sub } = frame(place, {
     title: "Ladder",

@@ -70,6 +70,7 @@ function pieces(host, markups) {
 // scrolls, before anything is written; then panels are drawn until DRAW_MS is spent, and those left over come first in the next
 // frame. A panel that is out of sight is drawn a few times a second: who scrolls there or has it read aloud finds it as it is.
 const [DRAW_MS, AWAY_MS] = [3, 250];
+const SPARE_PX = 800; // of a large drawing at most so much above and below what is in sight is there as elements
 const work = {
   looks: new Set(),
   draws: new Map(), // what draws -> the element that it draws in
@@ -142,8 +143,8 @@ class Drawing {
     return node;
   }
   // A drawing to look at: its symbols cannot be pressed.
-  still() {
-    for (const node of this.svg.querySelectorAll("[role=button]")) set(node, "role", "img");
+  still(part = this.svg) {
+    for (const node of part.querySelectorAll("[role=button]")) set(node, "role", "img");
     return this;
   }
   // One more piece of the drawing, before another one or at the end; `remove` takes it out again.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Container
 from typing import TYPE_CHECKING
 
 from ..assembler.program import Program
@@ -100,28 +100,28 @@ class ChartLive:
     def __init__(self, sheet: ChartSheet, program: Program | None):
         self.program = program
         marks = list(sheet.marks())
-        nodes = [(y, what) for what, _, y in marks if isinstance(what, Node)]
-        bars = {id(what): y for what, _, y in marks if isinstance(what, Transition)}
-        # Everything with its height on the sheet, so that of a large chart only what is looked at need be asked.
-        self.steps = [(y, node.devices[0]) for y, node in nodes if not node.joins]
-        self.joins = [(y, node) for y, node in nodes if node.joins]
+        # Everything with the number of its band, so that of a large chart only what is looked at need be asked.
+        nodes = [(sheet.band_of(y), what) for what, _, y in marks if isinstance(what, Node)]
+        bars = {id(what): sheet.band_of(y) for what, _, y in marks if isinstance(what, Transition)}
+        self.steps = [(band, node.devices[0]) for band, node in nodes if not node.joins]
+        self.joins = [(band, node) for band, node in nodes if node.joins]
         self.waiting = [
             (bars[id(transition)], Waiting(transition, node, sheet.lengths.condition(transition), sheet.model))
             for _, node in nodes
             for transition in (node.step.transitions if node.step else ())
             if id(transition) in bars
         ]
-        self.actions: list[tuple[float, Action, Node]] = [
-            (y, action, node) for y, node in nodes if node.step for action in node.step.actions
+        self.actions: list[tuple[int, Action, Node]] = [
+            (band, action, node) for band, node in nodes if node.step for action in node.step.actions
         ]
         self.values = [
-            (y, f"v{action.word.position}:text", reader(action.word.operands[0], operand_type(action.word, 0), sheet.model))
-            for y, action, _ in self.actions
+            (band, f"v{action.word.position}:text", reader(action.word.operands[0], operand_type(action.word, 0), sheet.model))
+            for band, action, _ in self.actions
             if counts(action.word)
         ]
 
-    def state(self, moment, shown: Sequence[tuple[float, float]] | None = None) -> dict[str, str]:
-        """Every entry at this moment, or those of what begins between the heights of `shown`."""
+    def state(self, moment, shown: Container[int] | None = None) -> dict[str, str]:
+        """Every entry at this moment, or those of the bands whose numbers are in `shown`."""
         plc = getattr(moment, "plc", moment)
         since: dict[str, int] = getattr(moment, "step_since", {})
         points = {point.text: point for point in getattr(moment, "breakpoints", ())}
@@ -130,12 +130,12 @@ class ChartLive:
         trace = plc.trace if plc.running and plc.tracing and same else None
         steps = memory.lists["S"]
 
-        def seen(y: float) -> bool:
-            return shown is None or any(top <= y <= bottom for top, bottom in shown)
+        def seen(band: int) -> bool:
+            return shown is None or band in shown
 
         entries: dict[str, str] = {}
-        for y, device in self.steps:
-            if not seen(y):
+        for band, device in self.steps:
+            if not seen(band):
                 continue
             active = bool(steps[device.number])
             entries[f"{device}:class"] = "step active" if active else "step"
@@ -143,17 +143,17 @@ class ChartLive:
             point = points.get(str(device))
             entries[f"k{device}:class"] = "breakpoint none" if point is None else "breakpoint" if point.enabled else "breakpoint off"
             entries[f"t{device}:text"] = "" if began is None else f"{max(0, plc.time_us - began) / 1e6:,.2f} s"
-        for y, node in self.joins:
-            if seen(y):
+        for band, node in self.joins:
+            if seen(band):
                 self._join(entries, node, steps)
-        for y, action, node in self.actions:
-            if seen(y):
+        for band, action, node in self.actions:
+            if seen(band):
                 entries[f"e{action.word.position}:class"] = "action on" if self._at_work(action, node, plc, trace) else "action"
-        for y, key, read in self.values:
-            if seen(y):
+        for band, key, read in self.values:
+            if seen(band):
                 entries[key] = figure(read(memory)) if read else ""
-        for y, transition in self.waiting:
-            if seen(y):
+        for band, transition in self.waiting:
+            if seen(band):
                 transition.put(entries, memory, trace, plc.running)
         return entries
 

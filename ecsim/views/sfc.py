@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from ..assembler.program import Program, Unit
@@ -21,6 +21,8 @@ from .symbols import counts, group, preset_text, value_room
 
 EDGE, BETWEEN, NATURAL = 12, 40, 960
 STEP, HIGH, ROW, LETTER, TIME = 58, 40, 26, 20, 54
+BAND, SLACK = 480, 16  # the height of a band, and by how much its signs reach beyond their places
+KEPT = 4  # sheets of a chart, each for a width
 ACTION, LONGEST, BAR = 124, 320, 12
 
 
@@ -59,19 +61,22 @@ class Chart:
     def svg(self, prefix: str = "", width: int | None = None) -> str:
         """The picture at rest, `width` px wide or as much more as a flow needs; every id begins with `prefix`."""
         self._drawn = width
-        return self._sheet().picture(prefix)
+        return self.sheet(width).picture(prefix)
 
-    def state(self, moment, shown: Sequence[tuple[float, float]] | None = None) -> dict[str, str]:
-        """What changes in the picture last drawn, by "key:attribute"; `shown` leaves out what does not begin between its heights in px.
+    def state(self, moment) -> dict[str, str]:
+        """What changes in the picture last drawn, by "key:attribute".
 
         `moment` is the Plc, or a Session, which also knows since when each step is active.
         """
-        return self._sheet().live.state(moment, shown)
+        return self.sheet(self._drawn).live.state(moment)
 
-    def _sheet(self) -> ChartSheet:
-        if self._drawn not in self._sheets:
-            self._sheets[self._drawn] = ChartSheet(self, self._drawn)
-        return self._sheets[self._drawn]
+    def sheet(self, width: int | None = None) -> ChartSheet:
+        """The chart laid out for a width, from which single bands can be had; the last few widths are kept."""
+        if width not in self._sheets:
+            if len(self._sheets) >= KEPT:
+                del self._sheets[next(iter(self._sheets))]
+            self._sheets[width] = ChartSheet(self, width)
+        return self._sheets[width]
 
     def _repr_svg_(self) -> str:
         return s.standalone(self.svg())
@@ -171,11 +176,30 @@ def action_width(action: Action, labels: Labels, longest: float = LONGEST) -> fl
     return min(longest, max(ACTION, room))
 
 
+Line = tuple[float, float, float, float, bool]  # x1, y1, x2, y2, twice
+
+
 # -- a sheet ----------------------------------------------------------------------------------------------------
 
 
+@dataclass
+class Band:
+    """What begins within BAND px of a sheet's height, and from where to where it reaches, in px."""
+
+    top: float
+    bottom: float
+    marks: list[tuple[Node | Transition | Jump, float, float]] = field(default_factory=list)
+    lines: list[Line] = field(default_factory=list)
+
+    def reach(self, top: float, bottom: float) -> None:
+        self.top, self.bottom = min(self.top, top), max(self.bottom, bottom)
+
+
 class ChartSheet:
-    """A chart laid out for one width: flows side by side as far as they fit, then below one another."""
+    """A chart laid out for one width: flows side by side as far as they fit, then below one another.
+
+    A page that shows only a part of a large chart takes the `shell` and those of the `bands` that it looks at.
+    """
 
     def __init__(self, chart: Chart, asked: int | None):
         self.labels, self.model, self.unit = chart.labels, chart.model, chart.unit
@@ -194,6 +218,7 @@ class ChartSheet:
             x += room + BETWEEN
         self._centre(asked)
         self.height = low + EDGE
+        self.bands, self._long = self._in_bands()
         self.live = ChartLive(self, chart.program)
 
     def _centre(self, asked: float) -> None:
@@ -209,12 +234,68 @@ class ChartSheet:
             for mark in sketch.marks:
                 yield mark.what, x + mark.x, y + mark.y
 
+    def lines(self) -> Iterator[Line]:
+        """Every line in its place on the sheet."""
+        for sketch, x, y in self.places:
+            for x1, y1, x2, y2, twice in sketch.lines:
+                yield x + x1, y + y1, x + x2, y + y2, twice
+
+    @staticmethod
+    def band_of(y: float) -> int:
+        """The number of the band in which a height lies."""
+        return int(y // BAND)
+
+    def _in_bands(self) -> tuple[list[Band], list[Line]]:
+        """The bands, and the lines that are longer than one."""
+        bands = [Band(BAND * number, BAND * (number + 1)) for number in range(self.band_of(self.height) + 1)]
+        long = []
+        for what, x, y in self.marks():
+            if isinstance(what, Transition):
+                up, down = self.lengths.transition(what)[2:]
+            else:
+                up, down = 0, self.lengths.jump if isinstance(what, Jump) else self.lengths.node(what)[2]
+            band = bands[self.band_of(y)]
+            band.marks.append((what, x, y))
+            band.reach(y - up - SLACK, y + down + SLACK)
+        for line in self.lines():
+            low, high = sorted((line[1], line[3]))
+            if high - low > BAND:
+                long.append(line)
+                continue
+            band = bands[self.band_of(low)]
+            band.lines.append(line)
+            band.reach(low, high + SLACK)
+        return bands, long
+
+    def boxes(self) -> dict[str, tuple[int, int, int]]:
+        """Each step's box: its left and top edge in px, and the number of its band."""
+        nodes = ((what, x, y) for what, x, y in self.marks() if isinstance(what, Node) and not what.joins)
+        return {str(node.devices[0]): (round(x - STEP / 2), round(self._box_top(node, y)), self.band_of(y)) for node, x, y in nodes}
+
     # -- the picture --------------------------------------------------------------------------------------------
 
     def picture(self, prefix: str) -> str:
-        """The root `<svg>` at rest."""
+        """The root `<svg>` at rest with all bands."""
+        return self._root(self._content(self.marks(), self.lines(), prefix))
+
+    def shell(self) -> str:
+        """The root `<svg>` in its whole size, with nothing but the lines that are longer than a band."""
+        return self._root("".join(self._paths(self._long)))
+
+    def band(self, number: int, prefix: str) -> str:
+        """One band at rest, in its place on the sheet."""
+        band = self.bands[number]
+        return s.element("g", self._content(band.marks, band.lines, prefix))
+
+    def _root(self, content: str) -> str:
+        count = sum(isinstance(what, Node) and not what.joins for what, _, _ in self.marks())
+        label = f"Chart of {self.unit.name}, {count} step{'s' if count != 1 else ''}"
+        size = {"width": self.width, "height": self.height, "viewBox": f"0 0 {s.number(self.width)} {s.number(self.height)}"}
+        return s.element("svg", content, xmlns="http://www.w3.org/2000/svg", class_="ec sfc", role="img", aria_label=label, **size)
+
+    def _content(self, marks: Iterable[tuple[Node | Transition | Jump, float, float]], lines: Iterable[Line], prefix: str) -> str:
         plates, symbols = [], []
-        for what, x, y in self.marks():
+        for what, x, y in marks:
             if isinstance(what, Transition):
                 plates.append(self._plate(what, x, y, prefix))
                 symbols.append(self._transition(what, x, y, prefix))
@@ -222,20 +303,15 @@ class ChartSheet:
                 symbols.append(self._jump(what, x, y))
             else:
                 symbols += self._join(what, x, y, prefix) if what.joins else self._step(what, x, y, prefix)
-        count = sum(isinstance(what, Node) and not what.joins for what, _, _ in self.marks())
-        label = f"Chart of {self.unit.name}, {count} step{'s' if count != 1 else ''}"
-        size = {"width": self.width, "height": self.height, "viewBox": f"0 0 {s.number(self.width)} {s.number(self.height)}"}
-        content = "".join([*plates, *self._lines(), *symbols])
-        return s.element("svg", content, xmlns="http://www.w3.org/2000/svg", class_="ec sfc", role="img", aria_label=label, **size)
+        return "".join([*plates, *self._paths(lines), *symbols])
 
-    def _lines(self) -> Iterator[str]:
+    def _paths(self, lines: Iterable[Line]) -> Iterator[str]:
         plain, double = [], []
-        for sketch, x, y in self.places:
-            for x1, y1, x2, y2, twice in sketch.lines:
-                for offset in (0, self.lengths.double) if twice else (0,):
-                    start = f"M{s.number(x + x1)} {s.number(y + y1 + offset)}"
-                    path = start + (f"H{s.number(x + x2)}" if y1 == y2 else f"V{s.number(y + y2)}")
-                    (double if twice else plain).append(path)
+        for x1, y1, x2, y2, twice in lines:
+            for offset in (0, self.lengths.double) if twice else (0,):
+                start = f"M{s.number(x1)} {s.number(y1 + offset)}"
+                path = start + (f"H{s.number(x2)}" if y1 == y2 else f"V{s.number(y2)}")
+                (double if twice else plain).append(path)
         if plain:
             yield s.element("path", None, class_="link", d="".join(plain))
         if double:
@@ -245,8 +321,7 @@ class ChartSheet:
         device = node.devices[0]
         label, left = self.labels.named(device), x - STEP / 2
         actions = node.step.actions if node.step else ()
-        high = max(HIGH, ROW * len(actions)) if len(actions) < 3 else HIGH
-        y += (high - HIGH) / 2
+        y = self._box_top(node, y)
         program_step = f"program step {node.step.opening.words[0].step}" if node.step else ""
         parts = [s.tip("\n".join(filter(None, [str(label), node.step.title if node.step else "", program_step])))]
         parts.append(s.element("rect", None, class_="box", x=left, y=y, width=STEP, height=HIGH, rx=2))
@@ -264,6 +339,12 @@ class ChartSheet:
             yield from self._actions(actions, x + STEP / 2 + 14, top, prefix)
         elif label.name:
             yield s.text(x + STEP / 2 + 10, y + 24, cut(label.name, 140), "el-name")
+
+    @staticmethod
+    def _box_top(node: Node, y: float) -> float:
+        """A step's box stands in the middle of one or two actions, beside the first of more."""
+        rows = len(node.step.actions) if node.step else 0
+        return y + (ROW * rows - HIGH) / 2 if rows < 3 and ROW * rows > HIGH else y
 
     def _actions(self, actions: tuple[Action, ...], x: float, y: float, prefix: str) -> Iterator[str]:
         room = max(action_width(action, self.labels, self.lengths.longest) for action in actions)

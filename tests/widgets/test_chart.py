@@ -1,5 +1,7 @@
 """The chart's panel: which steps are active, what they do and wait for, which were taken."""
 
+import re
+
 import pytest
 from ecsim_widgets.chart import Chart
 from ecsim_widgets.ladder import Ladder
@@ -54,10 +56,10 @@ def test_a_step_back_takes_the_log_back(holding):
 def test_a_drawing_is_laid_out_for_the_pages_width(rig):
     panel = Chart(rig)
     panel.receive("fit", {"width": 640})
-    assert ' width="640"' in panel.frame()["svg"]
-    before = panel.frame()["svg"]
+    sheet = panel.frame()["sheet"]
+    assert ' width="640"' in sheet["svg"]
     panel.receive("fit", {"width": 640})
-    assert panel.frame()["svg"] is before
+    assert panel.frame()["sheet"] is sheet
 
 
 def test_the_ladder_shows_the_power_of_the_last_scan(rig):
@@ -128,26 +130,93 @@ def test_a_step_is_set_and_reset_by_hand(rig):
 # -- a large chart -------------------------------------------------------------------------------------------------
 
 
-def test_what_nobody_looks_at_keeps_its_entries_as_they_were(make_rig):
-    """A chain of steps, one below the other: 100 and more px for each."""
-    chain = [0, *range(20, 119)]
-    ways = zip(chain, [*chain[1:], 0], strict=True)
-    lines = (f"STL S{here}\nOUT M{here}\nLD X{here % 2}\n{'SET' if there else 'OUT'} S{there}" for here, there in ways)
-    text = "\n".join(lines)
-    rig = make_rig(program=f"LD SM1\nSET S0\n{text}\nRET")
-    rig.session.scan(2)
+@pytest.fixture
+def make_chain(make_rig):
+    """Make a rig with a chain of steps, one below the other: 100 and more px for each, one in four or five of a band's 480 px."""
+
+    def make(count):
+        chain = [0, *range(20, 19 + count)]
+        ways = zip(chain, [*chain[1:], 0], strict=True)
+        lines = (f"STL S{here}\nOUT M{here}\nLD X{here % 2}\n{'SET' if there else 'OUT'} S{there}" for here, there in ways)
+        text = "\n".join(lines)
+        rig = make_rig(program=f"LD SM1\nSET S0\n{text}\nRET")
+        rig.session.scan(2)
+        return rig
+
+    return make
+
+
+def drawn(frame):
+    """The numbers of the bands whose drawings are in a frame."""
+    return {int(key.removeprefix("band.")) for key in frame if key.startswith("band.")}
+
+
+def test_a_chart_of_sixty_steps_is_there_as_a_whole(make_chain):
+    frame = Chart(make_chain(60)).frame()
+    assert drawn(frame) == set(frame["live"]) == set(range(len(frame["sheet"]["bands"])))
+    assert all(f"S{number}:class" in frame for number in (0, *range(20, 79)))
+    assert all(f'id="EC0-S{number}"' in "".join(frame[f"band.{band}"] for band in frame["live"]) for number in (0, *range(20, 79)))
+
+
+def test_of_a_large_chart_a_page_gets_what_it_looks_at(make_chain):
+    rig = make_chain(330)
+    chart = Chart(rig)
+    first = chart.frame()
+    sheet = first["sheet"]
+    last = len(sheet["bands"]) - 1
+    assert last == 64
+    assert drawn(first) == set(range(6))
+    assert len(str(first)) < 0.4 * sum(len(chart.sheet.band(number, "")) for number in range(last + 1))
+    assert "S348:class" not in first
+    _, top, band = sheet["steps"]["S348"]
+    assert 480 * band <= top < 480 * (band + 1)
+    assert sheet["bands"][band][0] <= top <= sheet["bands"][band][1]
+    chart.receive("see", {"view": "a", "first": last - 3, "last": last + 9})
+    frame = chart.frame()
+    assert frame["looked"] == frame["live"] == [last - 3, last - 2, last - 1, last]
+    assert 'data-device="S348"' in frame[f"band.{band}"]
+    assert frame["S348:class"] == "step"
+    assert "S0:class" not in frame
+    rig.session.set_step("S348", True)
+    assert chart.frame()["S348:class"] == "step active"
+    for first in range(last):
+        chart.receive("see", {"view": "a", "first": first, "last": first})
+    assert drawn(chart.frame()) == set(range(last - 60, last))
+    assert len(chart.frame()["live"]) == 16
+    chart.receive("see", {"view": "a", "first": -5, "last": 10_000})
+    assert chart.frame()["looked"] == list(range(40))
+
+
+def test_the_lines_of_all_bands_are_those_of_the_whole_chart(make_chain):
+    """Each line once, be it in a band or, as it is longer, in what is around them."""
+    chart = Chart(make_chain(30))
+    pieces = [chart.sheet.shell(), *(chart.sheet.band(number, "") for number in range(len(chart.sheet.bands)))]
+
+    def lines(markup):
+        paths = re.findall(r'class="link[ dbl]*" d="([^"]*)"', markup) + re.findall(r'd="([^"]*)" class="link', markup)
+        return sorted(line for path in paths for line in path.split("M") if line)
+
+    assert lines("".join(pieces)) == lines(chart.drawing.svg("", chart.width))
+    assert len(lines("".join(pieces))) > 60
+
+
+def test_what_was_looked_at_long_ago_has_no_entries_left(make_chain):
+    rig = make_chain(100)
     chart = Chart(rig)
     assert chart.frame()["S0:class"] == "step active"
-    chart.receive("see", {"view": "a", "top": 5000, "bottom": 7000})
+    for first in (4, 8, 12, 16, 20):
+        chart.receive("see", {"view": "a", "first": first, "last": first + 3})
     rig.put("X0", 1)  # S0 and S20 are left one behind the other, S21 waits for X1
     rig.session.scan(2)
     frame = chart.frame()
     assert frame["active"] == ["S21"]
-    assert (frame["S0:class"], frame["S21:class"]) == ("step active", "step")
-    chart.receive("see", {"view": "a", "top": 0, "bottom": 2000})
+    assert "S0:class" not in frame
+    assert 0 not in frame["live"]
+    chart.receive("see", {"view": "a", "first": 0, "last": 3})
     assert (chart.frame()["S0:class"], chart.frame()["S21:class"]) == ("step", "step active")
     chart.receive("unsee", {"view": "a"})
     rig.put("X0", 0)
     rig.put("X1", 1)
     rig.session.scan(2)
     assert chart.frame()["S22:class"] == "step active"
+    assert chart.frame()["looked"] == []

@@ -117,14 +117,14 @@ def test_a_panel_without_its_kernel_keeps_what_it_showed(shown, still):
     expect(bench["ladder"].locator(".stamp")).to_have_text("last state · scan 3")
 
 
-# -- a large chart: only what is looked at is laid out, and the active step is always found ------------------------
+# -- a large chart: only what is near sight is there as elements, and the active step is always found ------------------------
 
 CHAIN = [0, *range(20, 119)]
 WAYS = zip(CHAIN, [*CHAIN[1:], 0], strict=True)
 LONG = "\n".join(f"STL S{here}\nOUT M{here}\nLD X{here % 2}\n{'SET' if there else 'OUT'} S{there}" for here, there in WAYS)
 FOUND = """(step) => {
-  const [own, outer] = [step, '.chart-scroll'].map((each) => document.querySelector(each).getBoundingClientRect());
-  return own.height > 0 && own.top >= outer.top && own.bottom <= outer.bottom;
+  const [own, outer] = [step, '.chart-scroll'].map((each) => document.querySelector(each)?.getBoundingClientRect());
+  return Boolean(own) && own.height > 0 && own.top >= outer.top && own.bottom <= outer.bottom;
 }"""
 
 
@@ -144,7 +144,162 @@ def set_step(bench, number):
     bench.settle()
 
 
-def test_a_large_chart_scrolls_in_its_panel_and_lays_out_what_is_looked_at(long_chart):
+IN_PAGE = "() => [...document.querySelectorAll('.sfc .step[data-device]')].map((step) => step.dataset.device)"
+HEIGHTS = """() => {
+  const outer = document.querySelector('.chart-scroll').getBoundingClientRect();
+  const boxes = [...document.querySelectorAll('.sfc .step[data-device] .box')].map((box) => box.getBoundingClientRect());
+  return [outer.height, Math.min(...boxes.map((box) => box.top)) - outer.top, Math.max(...boxes.map((box) => box.bottom)) - outer.bottom];
+}"""
+
+
+def scroll_to(bench, height):
+    bench.js("(height) => { document.querySelector('.chart-scroll').scrollTop = height; }", height)
+    bench.settle()
+    bench.settle()
+
+
+def test_steps_out_of_sight_are_no_elements(long_chart):
+    """Of a chart of 100 steps, one below the other, those that are further away than about a panel's height."""
+    for height in (0, 4500, 1e6, 2000):
+        scroll_to(long_chart, height)
+        high, above, below = long_chart.js(HEIGHTS)
+        assert above >= -high - 480  # a band is there as a whole
+        assert below <= high + 480
+        assert above <= 100 or height == 0  # and what is in sight is there
+        assert below >= -150 or height == 1e6
+        assert 8 < len(long_chart.js(IN_PAGE)) < 40
+
+
+def test_a_small_chart_is_there_as_a_whole(shown):
+    bench = shown("chart")
+    assert bench.js(IN_PAGE) == ["S0", "S20"]
+
+
+def test_marks_of_a_step_are_right_when_it_comes_into_sight(long_chart):
+    """S90 becomes active and gets a breakpoint while S0 is looked at; S0 ends while S90 is."""
+    session = long_chart.lab.session
+    long_chart["chart-follow"].click()
+    session.breakpoints.add("S90")
+    session.set_step("S90", True)
+    long_chart.settle()
+    assert "S90" not in long_chart.js(IN_PAGE)
+    place = long_chart.js("() => model.get('last').chart.sheet.steps.S90[1]")
+    scroll_to(long_chart, place - 200)
+    step = long_chart["step-S90"]
+    expect(step).to_have_class("step active")
+    expect(step).to_have_attribute("data-on", "")
+    expect(step).to_have_attribute("aria-label", "S90, breakpoint, active")
+    expect(step.locator("xpath=following-sibling::*[2]")).to_have_class("breakpoint")
+    waits = "() => document.querySelectorAll('.chart-scroll .tbar.enabled').length"
+    assert long_chart.js(waits) == 1
+    session.breakpoints.remove("S90")
+    session.set_step("S0", False)
+    long_chart.settle()
+    expect(step).to_have_attribute("aria-label", "S90, active")
+    assert "S0" not in long_chart.js(IN_PAGE)
+    scroll_to(long_chart, 0)
+    expect(long_chart["step-S0"]).to_have_class("step")
+    expect(long_chart["step-S0"]).to_have_attribute("aria-label", "S0")
+    assert long_chart.js(waits) == 0
+
+
+def test_a_value_is_right_at_once_when_its_step_was_near_before(long_chart):
+    """The steps that were looked at lately go on to be told of; those of long ago are not shown before they are true."""
+    session = long_chart.lab.session
+    long_chart["chart-follow"].click()
+    scroll_to(long_chart, 3000)
+    session.set_step("S22", True)
+    long_chart.settle()
+    scroll_to(long_chart, 9000)
+    scroll_to(long_chart, 4000)
+    scroll_to(long_chart, 9000)
+    session.set_step("S22", False)
+    long_chart.js("() => { model.send = () => {}; }")  # nobody answers any more
+    long_chart.js("() => { document.querySelector('.chart-scroll').scrollTop = 0; }")
+    long_chart.frame()
+    steps = long_chart["step-S22"]
+    assert steps.count() == 0 or steps.get_attribute("class") == "step"
+
+
+def test_the_screen_reader_is_told_how_many_steps_there_are(long_chart):
+    set_step(long_chart, 90)
+    expect(long_chart["step-S90"]).to_have_attribute("aria-setsize", "100")
+    expect(long_chart["step-S90"]).to_have_attribute("aria-posinset", "72")  # S0, then S20 to S118
+    expect(long_chart["step-S90"]).to_have_attribute("role", "treeitem")
+
+
+def test_the_arrows_go_on_from_a_step_that_was_scrolled_away(long_chart):
+    long_chart["step-S21"].focus()
+    for _ in range(30):
+        long_chart.page.keyboard.press("ArrowDown")
+        long_chart.settle()
+    expect(long_chart["step-S51"]).to_be_focused()
+    assert long_chart.js(FOUND, '[data-testid="step-S51"]')
+    assert "S0" not in long_chart.js(IN_PAGE)
+    scroll_to(long_chart, 9000)
+    expect(long_chart["step-S51"]).to_be_focused()
+    long_chart.page.keyboard.press("ArrowDown")
+    long_chart.settle()
+    expect(long_chart["step-S52"]).to_be_focused()
+    assert long_chart.js(FOUND, '[data-testid="step-S52"]')
+
+
+def test_a_step_that_keeps_the_focus_far_away_is_whole_when_it_comes_back(long_chart):
+    """It is told of no more after many others have been looked at; S21 ends meanwhile."""
+    session = long_chart.lab.session
+    long_chart["chart-follow"].click()
+    session.set_step("S21", True)
+    long_chart.settle()
+    long_chart["step-S21"].focus()
+    for height in (2500, 4500, 6500, 8500, 10500):
+        scroll_to(long_chart, height)
+    assert 0 not in long_chart.js("() => model.get('last').chart.live")
+    expect(long_chart["step-S21"]).to_be_focused()
+    session.set_step("S21", False)
+    long_chart.settle()
+    expect(long_chart["step-S21"]).to_have_attribute("aria-label", "S21")
+    scroll_to(long_chart, 0)
+    expect(long_chart["step-S21"]).to_have_class("step")
+    expect(long_chart["step-S21"]).to_be_focused()
+
+
+def test_tab_finds_a_step_wherever_the_chart_is_scrolled(long_chart):
+    stops = "() => document.querySelectorAll('.sfc .step[tabindex=\"0\"]').length"
+    assert long_chart.js(stops) == 1
+    long_chart["chart-follow"].click()
+    scroll_to(long_chart, 9000)
+    assert long_chart.js(stops) == 1
+    long_chart["chart-follow"].focus()
+    long_chart.page.keyboard.press("Tab")
+    assert long_chart.js("() => document.activeElement.matches('.sfc .step')")
+
+
+def test_a_step_far_away_is_chosen_by_a_click_and_stays_chosen(long_chart):
+    set_step(long_chart, 90)
+    long_chart["step-S91"].click()
+    expect(long_chart["chart"].locator(".who")).to_contain_text("S91")
+    scroll_to(long_chart, 0)
+    assert "S91" not in long_chart.js(IN_PAGE) or long_chart["step-S91"].evaluate("(step) => step === document.activeElement")
+    scroll_to(long_chart, 1e6)
+    set_step(long_chart, 92)
+    expect(long_chart["step-S91"]).to_have_attribute("data-selected", "")
+
+
+def test_a_saved_chart_opens_where_it_was_looked_at(long_chart):
+    """Without a kernel the page has the bands that were looked at lately, and does not open on an empty place."""
+    long_chart["chart-follow"].click()
+    scroll_to(long_chart, 7000)
+    scroll_to(long_chart, 9300)
+    long_chart.js("() => show({ face: model.get('face'), last: structuredClone(model.get('last')) })")
+    long_chart.frame()
+    long_chart.js("() => { model.gone = true; model.handlers['comm_live_update'](); }")
+    long_chart.frame()
+    long_chart.frame()
+    assert long_chart.js(HEIGHTS)[1] <= 100
+    assert "S110" in long_chart.js(IN_PAGE)
+
+
+def test_a_large_chart_scrolls_in_its_panel_to_its_last_step(long_chart):
     laid_out = "() => [...document.querySelectorAll('.step')].filter((step) => step.getClientRects().length).length"
     assert long_chart.js("() => document.querySelector('.chart-scroll').scrollHeight") > 9000
     assert long_chart.js("() => document.querySelector('.chart-scroll').clientHeight") <= 960
