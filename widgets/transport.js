@@ -145,11 +145,15 @@ panels.transport = (place, layout, page) => {
     set(line, "aria-valuenow", run.scan);
     set(line, "aria-valuetext", `${seconds(run.time_us ?? 0)} s, ${run.back ? `${number(run.back)} scans back` : "now"}`);
     set(line, "aria-disabled", page.dead ? "true" : null);
+    // While the run goes on all marks move a little with every update: twice a second is enough for them.
+    const late = run.state !== "running" || performance.now() - placed > 500;
+    if (late) placed = performance.now();
     for (const one of shown) {
-      const at = percent(one.scan);
+      const at = late || one.at === undefined ? percent(one.scan) : one.at;
       if (one.at !== at) one.node.style.left = one.at = at;
     }
   }
+  let placed = 0;
   // Events come at the end and go at the beginning; the marks of those between stay.
   let shown = [];
   function events() {

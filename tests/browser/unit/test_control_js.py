@@ -87,6 +87,27 @@ def test_step_changes_are_ticks(bench, real):
     assert [tick.get_attribute("title") for tick in ticks.all()] == ["S0, scan 1", "S20, scan 21"]
 
 
+def test_ticks_move_twice_a_second_while_it_runs_and_stand_right_when_it_stops(bench):
+    bench.show({"transport": {}})
+    bench.js("() => { window.moment = 1000; performance.now = () => window.moment; }")
+    left = "() => [...document.querySelectorAll('.ev')].map((tick) => tick.style.left)"
+
+    def scan(number, moment, state="running", **more):
+        bench.js("(moment) => { window.moment = moment; }", moment)
+        bench.tell(n=1, state={"run": {"state": state, "scan": number, "time_us": 10_000 * number}, **more})
+        return bench.js(left)
+
+    try:
+        first = {"first": 0, "events": [[50, "step", "S20"]]}
+        assert scan(100, 2000, transport=first) == ["50%"]
+        assert scan(125, 2400) == ["50%"]
+        assert scan(200, 2501) == ["25%"]
+        assert scan(400, 2600, transport={"events": [[50, "step", "S20"], [300, "step", "S21"]]}) == ["25%", "75%"]  # a new one at once
+        assert scan(500, 2700, "paused") == ["10%", "60%"]
+    finally:
+        bench.js("() => { delete performance.now; }")
+
+
 def test_a_breakpoint_is_written_kept_refused_and_switched_off(bench, real):
     bench["breaks"].click()
     field = bench["break-text"]
