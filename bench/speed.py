@@ -210,7 +210,7 @@ def per_instruction(rows: list[Row]) -> list[str]:
 
 def ratios(rows: list[Row]) -> list[str]:
     """ecsim against the yardstick: whole scans, and the program's share of them."""
-    yardstick, compiled, stepping, *_ = rows
+    yardstick, compiled, second, stepping, *_ = rows
     idle = statistics.median(compiled.times[IDLE.name])
     lines = [
         "| ratio to the yardstick, median of the turns | " + " | ".join(workload.name for workload in WORKLOADS) + " |",
@@ -226,6 +226,7 @@ def ratios(rows: list[Row]) -> list[str]:
 
     line("whole scans of the Plc", compiled, yardstick, 0.0)
     line("the program alone: less an idle scan", compiled, yardstick, idle)
+    line("an H2U over an EC20", second, compiled, 0.0)
     line("stepping engine over compiled engine", stepping, compiled, 0.0)
     return [*lines, "", f"An idle scan, with a program of one rung, takes {idle / 1000:.1f} us; the workloads' scans contain as much."]
 
