@@ -47,7 +47,6 @@ LIMIT_S = 60  # of the processor for all cases of a mutant; a run without end is
 EQUIVALENT = {
     r".*: machine\.clock\[0\] -> machine\.clock\[-1\].*": "the clock is a list of one element",
     r"bits\.enco: s & -s -> s \| -s": "s | -s is the negative number of the same lowest bit, and as long",
-    r"checksums\.: range\(256\) -> range\(257\)": "an index of 8 bits never reaches the entry",
     r"clock\.(trd|twr): faults=.*": "what a span of registers raises is caught anyway; the column then serves the help page alone",
     r"clock\.run_on: \(None, 0, 0\) -> \(None, -?1, 0\)": "the scan is looked at only when there is a time to count from",
     r"clock\._comparing: .*__doc__.*": "the words of the help page",
@@ -59,7 +58,6 @@ EQUIVALENT = {
     r"(flow\.next_|sfc\.ret|master_control\.mcr|fx_basic\.mcr): code\.close\(\) -> nothing": "no engine writes anything there, the program's structure tells where it ends",
     r"sfc\.stl: code\.step\(\) -> nothing": "no engine writes anything there, the program's structure tells where it begins",
     r"transfer\.check: strings\[-?[01]\] -> .*\(2\)": "the words of the message",
-    r"shifts\.shl: min\(s2, 32\) -> min\(s2, 33\)": "of 32 bits nothing is left after 32 places",
     r"conversion\.truncated: s > high -> s >= high": "a number at the limit has been dealt with before",
     r"conversion\.hold: len\(words\) > 1 -> len\(words\) > 2": "with a count above 256 a device gives 64 words, a constant one",
     r"conversion\.one_to_256: 65535 if .* -> 65536 if .*": "no constant of 16 bits is larger than 65535",
