@@ -30,6 +30,7 @@ import urllib.error
 import urllib.request
 from dataclasses import dataclass
 from pathlib import Path
+from xml.etree import ElementTree
 
 ROOT = Path(__file__).resolve().parent
 VENV = ROOT / ".venv"
@@ -326,12 +327,14 @@ class Part:
     may_be_empty: str = ""
     passed: bool = True
     seconds: float = 0.0
+    failures: tuple = ()
 
     def outcome(self):
-        """Return the part's line in the closing table."""
+        """Return the part's line in the closing table, and one for each test that failed."""
         if self.skipped:
             return f"  {self.name:<10} skipped            {self.skipped}"
-        return f"  {self.name:<10} {'passed' if self.passed else 'FAILED'}  {self.seconds:6.1f} s"
+        line = f"  {self.name:<10} {'passed' if self.passed else 'FAILED'}  {self.seconds:6.1f} s"
+        return "\n".join([line, *(f"             {name}" for name in self.failures)])
 
 
 def run_tests(quick=False, expression=None, pytest_arguments=()):
@@ -341,7 +344,7 @@ def run_tests(quick=False, expression=None, pytest_arguments=()):
         environment = test_environment(home)
         for part in parts:
             if not part.skipped:
-                run_part(part, environment)
+                run_part(part, environment, Path(home) / f"{part.name}.xml")
     failed = [part.name for part in parts if not part.passed]
     say("\n" + "\n".join(part.outcome() for part in parts))
     say(f"ecsim: FAILED: {', '.join(failed)}" if failed else "ecsim: all that ran has passed")
@@ -369,16 +372,26 @@ def test_parts(quick, expression, pytest_arguments):
     ]
 
 
-def run_part(part, environment):
-    """Run one part with its output shown and note how it ended."""
+def run_part(part, environment, report):
+    """Run one part with its output shown and note how it ended; pytest writes its report to a file, which tells the tests that failed."""
     say(f"\n--- {part.name}: {' '.join(part.command[1:])}")
     started = time.monotonic()
-    code = subprocess.run(part.command, cwd=ROOT, env=environment, stdin=subprocess.DEVNULL).returncode
+    command = [*part.command, f"--junitxml={report}"] if "pytest" in part.command else part.command
+    code = subprocess.run(command, cwd=ROOT, env=environment, stdin=subprocess.DEVNULL).returncode
     part.seconds = time.monotonic() - started
     if code == 5 and part.may_be_empty:  # pytest: no test collected
         part.skipped = part.may_be_empty
     else:
         part.passed = code == 0
+    if not part.passed and report.is_file():
+        part.failures = failures_in(report)
+
+
+def failures_in(report):
+    """Return the names of the tests that failed or stopped with an error, of a report in JUnit's form."""
+    cases = ElementTree.parse(report).iter("testcase")
+    bad = [case for case in cases if case.find("failure") is not None or case.find("error") is not None]
+    return tuple(f"{case.get('classname')}::{case.get('name')}" for case in bad)
 
 
 def test_environment(home):

@@ -245,6 +245,17 @@ def test_the_command_fails_when_a_part_fails(lab, monkeypatch, capsys, code, exp
     assert re.search(r"browser +skipped +no browser here", said)
 
 
+def test_the_closing_table_names_the_tests_that_failed(lab, monkeypatch, capsys, tmp_path):
+    (tmp_path / "test_three.py").write_text(
+        "import pytest\n\n@pytest.fixture\ndef broken(): 1 / 0\n\ndef test_good(): pass\ndef test_bad(): assert 0\ndef test_none(broken): pass\n"
+    )
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "--rootdir", str(tmp_path), str(tmp_path)]
+    monkeypatch.setattr(lab, "test_parts", lambda *_: [lab.Part("tests", command)])
+    assert lab.run_tests() == 1
+    table = capsys.readouterr().out.partition("FAILED")[2].splitlines()
+    assert [line.strip() for line in table[1:3]] == ["test_three::test_bad", "test_three::test_none"]
+
+
 def test_a_part_that_may_be_empty_is_told_as_skipped(lab, monkeypatch, capsys):
     monkeypatch.setattr(lab, "test_parts", lambda *_: [part(lab, "browser", 5, may_be_empty="no such test")])
     assert lab.run_tests() == 0
